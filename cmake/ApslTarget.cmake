@@ -1,0 +1,7 @@
+# What every target of ours has in common; nothing global, so that an embedding project keeps its own flags.
+function(apsl_target target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+    $<$<BOOL:${APSL_WARNINGS_AS_ERRORS}>:-Werror>)
+endfunction()

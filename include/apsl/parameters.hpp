@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <apsl/export.hpp>
+
+#include <cstdint>
+
+namespace apsl {
+
+/// Which matrix couples the pressures (docs/formulation.md).
+enum class Matrix : std::int32_t {
+    consistent = 0,  ///< G = ½ Σ w g·g over shared vertices: what Eq. (6) really does to the areas
+    printed = 1,     ///< Eq. (4) as printed: triangles across an edge only
+};
+
+/// How G is applied inside Conjugate Gradient.
+enum class Apply : std::int32_t {
+    assembled_csr = 0,  ///< assemble the rows, then sparse matrix-vector products
+    matrix_free = 1,    ///< from the corner gradients, nothing assembled
+};
+
+/// What may change from one filter call to the next.
+struct Parameters {
+    float time_step = 1.0f / 60.0f;    ///< s, > 0; Δt of Algorithm 1
+    float regularization = 1.2f;       ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
+    std::int32_t sub_steps = 10;       ///< ≥ 0; the fixed count of Algorithm 1
+    float target_area_change = 0.0f;   ///< |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it
+    float tolerance = 0.1f;            ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, both in the norm of 1/(α diag G)
+    std::int32_t max_iterations = 50;  ///< ≥ 1, CG iterations a solve
+};
+
+/// Throws Error(invalid_argument) naming the first field that is out of range or not finite.
+APSL_API void validate(const Parameters& parameters);
+
+}  // namespace apsl

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <apsl/parameters.hpp>
+#include <apsl/stats.hpp>
+#include <apsl/topology.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace apsl::reference {
+
+/// What the filter reads and writes, in the caller's memory.
+template <class Real>
+struct Buffers {
+    std::span<const Real> positions;       ///< m, [3V], x̃: the start of the step, not the predicted end
+    std::span<Real> velocities;            ///< m/s, [3V], ṽ in and out
+    std::span<const Real> inverse_masses;  ///< 1/kg, [V], 0 pins a vertex
+    std::span<const Real> rest_areas;      ///< m², [T], > 0
+    std::span<const Real> regularization;  ///< α ≥ 1, [T], or empty: Parameters::regularization for all
+};
+
+/// The filter of Algorithm 1 on the CPU, one thread, plain code: what device results are checked against.
+/// Same verbs as apsl::StrainLimiter; here everything has happened when enqueue returns.
+/// Instantiated for double (the reference) and float (the baseline of the benchmarks).
+template <class Real>
+class BasicStrainLimiter {
+public:
+    explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix = Matrix::consistent);
+    ~BasicStrainLimiter();
+    BasicStrainLimiter(BasicStrainLimiter&&) noexcept;
+    BasicStrainLimiter& operator=(BasicStrainLimiter&&) noexcept;
+
+    /// Bytes held between calls.
+    std::size_t scratch_bytes() const;
+    /// Filters the velocities. Throws Error(invalid_argument) for sizes that do not fit the topology, parameters out
+    /// of range, α < 1, negative or non-finite inverse masses, rest areas that are not positive.
+    /// Positions or velocities that are not finite are a status (diverged): velocities are left as they were.
+    void enqueue(const Buffers<Real>& buffers, const Parameters& parameters);
+    /// Of the last call.
+    Stats read_stats() const;
+
+private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+using StrainLimiter = BasicStrainLimiter<double>;
+
+extern template class BasicStrainLimiter<double>;
+extern template class BasicStrainLimiter<float>;
+
+/// Rest areas of the triangles at the given positions: m², [T] from [3V]. Zero for a degenerate triangle.
+template <class Real>
+std::vector<Real> areas(const Topology& topology, std::span<const Real> positions);
+
+/// Lumped inverse masses: each vertex carries a third of its triangles' rest area times density (kg/m²). 0 for isolated
+/// vertices. 1/kg, [V].
+template <class Real>
+std::vector<Real> inverse_masses(const Topology& topology, std::span<const Real> rest_areas, Real density);
+
+}  // namespace apsl::reference

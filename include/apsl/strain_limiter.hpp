@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <apsl/error.hpp>
+#include <apsl/export.hpp>
+#include <apsl/parameters.hpp>
+#include <apsl/stats.hpp>
+#include <apsl/topology.hpp>
+
+#include <CL/cl.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace apsl {
+
+/// What is compiled into the kernels of a StrainLimiter.
+struct Options {
+    Matrix matrix = Matrix::consistent;
+    Apply apply = Apply::matrix_free;
+    /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
+    std::uint32_t work_group_size = 0;
+    /// Floats from one vertex to the next in positions and in velocities, ≥ 3.
+    std::uint32_t position_stride = 3;
+    std::uint32_t velocity_stride = 3;
+    /// A regularization buffer is given with every call.
+    bool regularization_per_triangle = false;
+};
+
+/// A place in a caller's buffer. The element stride is fixed in Options.
+struct BufferView {
+    cl_mem buffer = nullptr;
+    std::size_t offset = 0;  ///< bytes, a multiple of 4
+};
+
+/// 32-bit floats in the caller's buffers. With several cloths their vertices and triangles follow one another in the
+/// order the cloths were given in.
+struct Buffers {
+    BufferView positions;       ///< m, 3 floats every Options::position_stride, [V]; x̃, the start of the step; only read
+    BufferView velocities;      ///< m/s, 3 floats every Options::velocity_stride, [V]; ṽ in and out
+    BufferView inverse_masses;  ///< 1/kg, [V], 0 pins a vertex
+    BufferView rest_areas;      ///< m², [T]; a triangle with rest area ≤ 0 is left alone
+    BufferView regularization;  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
+};
+
+/// One kernel's share of the profiled commands (see StrainLimiter::profile).
+struct KernelTime {
+    std::string name;
+    std::int64_t launches = 0;
+    double seconds = 0.0;  ///< on the device, from the profiling events
+};
+
+/// The filter of Algorithm 1 on an OpenCL device, inside the caller's context, queue and buffers.
+///
+/// A call allocates nothing, waits for nothing and reads nothing back: every decision (convergence, the target, what
+/// is not finite) is taken on the device. Same input, same device: same bytes. Not safe for use from two threads at
+/// once: one limiter per thread. Any number of limiters may share a context.
+class APSL_API StrainLimiter {
+public:
+    /// Compiles the kernels and uploads the adjacency of one or more cloths; the only place that waits.
+    /// Throws Error: invalid_argument (no cloths, options out of range), unsupported (the device lacks what the options
+    /// ask for), kernel_build, opencl.
+    StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
+                  const Options& options = {});
+    StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
+                  const Options& options = {});
+    ~StrainLimiter();
+    StrainLimiter(StrainLimiter&&) noexcept;
+    StrainLimiter& operator=(StrainLimiter&&) noexcept;
+
+    /// Device memory this object holds, adjacency included.
+    std::size_t scratch_bytes() const noexcept;
+    std::size_t cloth_count() const noexcept;
+    /// The options as resolved for the device (no zeros left).
+    const Options& options() const noexcept;
+
+    /// Queues one filter call. `parameters` holds one entry for every cloth, or a single one for all.
+    /// The queue may be in-order or out-of-order. The returned event completes with the call; the caller releases it.
+    /// Throws Error(invalid_argument) before anything is queued, Error(opencl) where a call fails.
+    [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,
+                                   std::span<const cl_event> wait_list = {});
+    [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers, const Parameters& parameters,
+                                   std::span<const cl_event> wait_list = {});
+
+    /// Queues a non-blocking read of the last call's statistics, one entry for every cloth. `stats` must live until the
+    /// returned event completes; the caller releases it. On an out-of-order queue put enqueue's event into wait_list.
+    [[nodiscard]] cl_event read_stats(cl_command_queue queue, std::span<Stats> stats,
+                                      std::span<const cl_event> wait_list = {}) const;
+
+    /// While on, every launch on a queue with CL_QUEUE_PROFILING_ENABLE keeps its event, until profile() reads them.
+    void set_profiling(bool on) noexcept;
+    /// Waits for the launches since the last call and adds up their time by kernel. For benchmarks and reports.
+    std::vector<KernelTime> profile();
+
+private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace apsl
