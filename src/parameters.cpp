@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include <apsl/error.hpp>
+#include <apsl/parameters.hpp>
+
+#include <cmath>
+#include <sstream>
+
+namespace apsl {
+namespace {
+
+template <class Value>
+void require(bool legal, const char* field, Value value, const char* expected) {
+    if (legal) return;
+    std::ostringstream message;
+    message << field << " is " << value << ", expected " << expected;
+    throw Error(ErrorCode::invalid_argument, message.str());
+}
+
+}  // namespace
+
+void validate(const Parameters& p) {
+    require(std::isfinite(p.time_step) && p.time_step > 0.0f, "time_step", p.time_step,
+            "a finite number > 0 (seconds)");
+    require(std::isfinite(p.regularization) && p.regularization >= 1.0f, "regularization", p.regularization,
+            "a finite number >= 1 (alpha multiplies the diagonal of G)");
+    require(p.sub_steps >= 0, "sub_steps", p.sub_steps, "a whole number >= 0");
+    require(std::isfinite(p.target_area_change) && p.target_area_change >= 0.0f, "target_area_change",
+            p.target_area_change, "a finite number >= 0 (a fraction of the rest area)");
+    require(p.tolerance >= 0.0f && p.tolerance < 1.0f, "tolerance", p.tolerance, "a number in [0, 1)");
+    require(p.max_iterations >= 1, "max_iterations", p.max_iterations, "a whole number >= 1");
+}
+
+}  // namespace apsl
