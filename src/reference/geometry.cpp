@@ -11,16 +11,19 @@ TriangleGeometry<Real> triangle_geometry(const Triangle& triangle, std::span<con
     const Vector3<Real> xj = position(positions, triangle[1]);
     const Vector3<Real> xk = position(positions, triangle[2]);
 
-    TriangleGeometry<Real> g;
-    g.edges = {xk - xj, xi - xk, xj - xi};
-    const Vector3<Real> doubled_area_normal = g.edges[2].cross(-g.edges[1]);
+    const Vector3<Real> ei = xk - xj;
+    const Vector3<Real> ej = xi - xk;
+    const Vector3<Real> ek = xj - xi;
+    const Vector3<Real> doubled_area_normal = ei.cross(ej);
     const Real doubled_area = doubled_area_normal.norm();
+
+    TriangleGeometry<Real> g;
     g.area = Real(0.5) * doubled_area;
     if (doubled_area > Real(0))
         g.normal = doubled_area_normal / doubled_area;
     else
         g.normal.setZero();
-    for (std::size_t corner = 0; corner < 3; ++corner) g.gradients[corner] = g.normal.cross(g.edges[corner]);
+    g.gradients = {g.normal.cross(ei), g.normal.cross(ej), g.normal.cross(ek)};
     return g;
 }
 

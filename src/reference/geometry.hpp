@@ -14,14 +14,13 @@ template <class Real>
 using Vector3 = Eigen::Matrix<Real, 3, 1>;
 
 /// What one triangle a = (i, j, k) contributes to a sub-step.
-///
-/// The edge opposite a vertex runs from the next vertex to the one after: e_i = x_k − x_j, and likewise for j, k.
 template <class Real>
 struct TriangleGeometry {
-    Real area;                               ///< m², A_a
-    Vector3<Real> normal;                    ///< unit normal n_a; zero where the area is zero
-    std::array<Vector3<Real>, 3> edges;      ///< m, e_i, e_j, e_k
-    std::array<Vector3<Real>, 3> gradients;  ///< m, corner gradients g_{a,i} = n_a × e_i; ∂A_a/∂x_i = ½ g_{a,i}
+    Real area;             ///< m², A_a
+    Vector3<Real> normal;  ///< unit normal n_a; zero where the area is zero
+    /// m, corner gradients g_{a,i} = n_a × e_i, with e_i = x_k − x_j the edge opposite vertex i, and likewise for j, k.
+    /// They point from that edge towards the vertex, |g_{a,i}| = |e_i|, and ∂A_a/∂x_i = ½ g_{a,i}.
+    std::array<Vector3<Real>, 3> gradients;
 };
 
 /// Position of vertex v in [3V] numbers.

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "reference/conjugate_gradient.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace apsl::reference {
+
+template <class Real>
+SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const TriangleVector<Real>& b, Real tolerance,
+                                     int max_iterations, ConjugateGradientScratch<Real>& scratch,
+                                     TriangleVector<Real>& lambda) {
+    constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
+    auto& [inverse_diagonal, r, z, p, q] = scratch;
+
+    inverse_diagonal = A.diagonal().cwiseInverse();
+    // Also where 1/D overflows.
+    for (Real& inverse : inverse_diagonal)
+        if (!std::isfinite(inverse)) inverse = Real(0);
+
+    lambda.setZero(b.size());
+    r = b;
+    z = inverse_diagonal.cwiseProduct(r);
+    p = z;
+    Real rz = r.dot(z);
+    if (!std::isfinite(rz)) return {0, not_a_number, false};
+    const Real norm_b = std::sqrt(rz);
+    if (norm_b == Real(0)) return {0, Real(0), true};
+
+    SolveResult<Real> result{0, Real(1), false};
+    Real pDp = rz;
+    while (result.iterations < max_iterations) {
+        q.noalias() = A * p;
+        const Real pq = p.dot(q);
+        if (!std::isfinite(pq)) return {result.iterations, not_a_number, false};
+        if (pq <= std::numeric_limits<Real>::epsilon() * pDp) break;
+
+        const Real step = rz / pq;
+        lambda += step * p;
+        r -= step * q;
+        z = inverse_diagonal.cwiseProduct(r);
+        const Real next_rz = r.dot(z);
+        ++result.iterations;
+        if (!std::isfinite(next_rz)) return {result.iterations, not_a_number, false};
+        const Real norm_r = std::sqrt(next_rz);
+        result.relative_residual = norm_r / norm_b;
+        if (norm_r <= tolerance * norm_b) {
+            result.converged = true;
+            break;
+        }
+        const Real beta = next_rz / rz;
+        p = z + beta * p;
+        pDp = next_rz + beta * beta * pDp;  // zᵀDz = rᵀz, and zᵀDp = rᵀp = 0
+        rz = next_rz;
+    }
+    return result;
+}
+
+template SolveResult<double> conjugate_gradient(const SparseMatrix<double>&, const TriangleVector<double>&, double, int,
+                                                ConjugateGradientScratch<double>&, TriangleVector<double>&);
+template SolveResult<float> conjugate_gradient(const SparseMatrix<float>&, const TriangleVector<float>&, float, int,
+                                               ConjugateGradientScratch<float>&, TriangleVector<float>&);
+
+}  // namespace apsl::reference
