@@ -21,8 +21,7 @@ enum class ErrorCode : std::int32_t {
 /// Every error the library throws: one line that names what, where, and what was expected.
 class APSL_API Error : public std::runtime_error {
 public:
-    Error(ErrorCode code, const std::string& what_was_wrong, std::int32_t opencl_code = 0,
-          std::string build_log = {});
+    Error(ErrorCode code, const std::string& what_was_wrong, std::int32_t opencl_code = 0, std::string build_log = {});
     ~Error() override;
     Error(const Error&) = default;
     Error& operator=(const Error&) = default;

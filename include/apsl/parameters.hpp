@@ -21,11 +21,11 @@ enum class Apply : std::int32_t {
 
 /// What may change from one filter call to the next.
 struct Parameters {
-    float time_step = 1.0f / 60.0f;    ///< s, > 0; Δt of Algorithm 1
-    float regularization = 1.2f;       ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
-    std::int32_t sub_steps = 10;       ///< ≥ 0; the fixed count of Algorithm 1
-    float target_area_change = 0.0f;   ///< |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it
-    float tolerance = 0.1f;            ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, both in the norm of 1/(α diag G)
+    float time_step = 1.0f / 60.0f;  ///< s, > 0; Δt of Algorithm 1
+    float regularization = 1.2f;     ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
+    std::int32_t sub_steps = 10;     ///< ≥ 0; the fixed count of Algorithm 1
+    float target_area_change = 0.0f;  ///< |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it
+    float tolerance = 0.1f;  ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, both in the norm of 1/(α diag G)
     std::int32_t max_iterations = 50;  ///< ≥ 1, CG iterations a solve
 };
 

@@ -40,8 +40,8 @@ struct BufferView {
 /// 32-bit floats in the caller's buffers. With several cloths their vertices and triangles follow one another in the
 /// order the cloths were given in.
 struct Buffers {
-    BufferView positions;       ///< m, 3 floats every Options::position_stride, [V]; x̃, the start of the step; only read
-    BufferView velocities;      ///< m/s, 3 floats every Options::velocity_stride, [V]; ṽ in and out
+    BufferView positions;   ///< m, 3 floats every Options::position_stride, [V]; x̃, the start of the step; only read
+    BufferView velocities;  ///< m/s, 3 floats every Options::velocity_stride, [V]; ṽ in and out
     BufferView inverse_masses;  ///< 1/kg, [V], 0 pins a vertex
     BufferView rest_areas;      ///< m², [T]; a triangle with rest area ≤ 0 is left alone
     BufferView regularization;  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
@@ -81,8 +81,8 @@ public:
     /// Queues one filter call. `parameters` holds one entry for every cloth, or a single one for all.
     /// The queue may be in-order or out-of-order. The returned event completes with the call; the caller releases it.
     /// Throws Error(invalid_argument) before anything is queued, Error(opencl) where a call fails.
-    [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,
-                                   std::span<const cl_event> wait_list = {});
+    [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers,
+                                   std::span<const Parameters> parameters, std::span<const cl_event> wait_list = {});
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers, const Parameters& parameters,
                                    std::span<const cl_event> wait_list = {});
 

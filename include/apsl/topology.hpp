@@ -51,9 +51,9 @@ public:
     std::span<const Corner> corners() const noexcept { return corners_; }                       ///< [3T]
 
     /// Edges in ascending order, and the corners opposite each: one on a boundary, two inside, more where not manifold.
-    std::span<const VertexPair> edges() const noexcept { return edges_; }                                   ///< [E]
-    std::span<const std::uint32_t> edge_corner_offsets() const noexcept { return edge_corner_offsets_; }    ///< [E + 1]
-    std::span<const Corner> edge_corners() const noexcept { return edge_corners_; }                         ///< [3T]
+    std::span<const VertexPair> edges() const noexcept { return edges_; }                                 ///< [E]
+    std::span<const std::uint32_t> edge_corner_offsets() const noexcept { return edge_corner_offsets_; }  ///< [E + 1]
+    std::span<const Corner> edge_corners() const noexcept { return edge_corners_; }                       ///< [3T]
 
     std::size_t boundary_edge_count() const noexcept { return boundary_edge_count_; }
     std::size_t non_manifold_edge_count() const noexcept { return non_manifold_edge_count_; }

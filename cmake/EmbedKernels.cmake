@@ -1,0 +1,31 @@
+# Run as a script at build time: writes OUTPUT, a C++ source that holds FILES (names below DIRECTORY, separated by |) as
+# bytes. Hex rather than string literals: nothing to escape, no limit on length.
+string(REPLACE "|" ";" files "${FILES}")
+set(arrays "")
+set(table "")
+foreach(file IN LISTS files)
+  file(READ "${DIRECTORY}/${file}" bytes HEX)
+  string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+  string(MAKE_C_IDENTIFIER "${file}" name)
+  string(APPEND arrays "const unsigned char ${name}[] = {${bytes}};\n")
+  string(APPEND table "    {\"${file}\", {reinterpret_cast<const char*>(${name}), sizeof ${name}}},\n")
+endforeach()
+file(WRITE "${OUTPUT}.new" "// Made by cmake/EmbedKernels.cmake.
+#include \"kernel_sources.hpp\"
+
+namespace apsl::host {
+namespace {
+
+${arrays}
+const KernelSource sources[] = {
+${table}};
+
+}  // namespace
+
+std::span<const KernelSource> kernel_sources() {
+    return sources;
+}
+
+}  // namespace apsl::host
+")
+file(RENAME "${OUTPUT}.new" "${OUTPUT}")

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "program.hpp"
+
+#include "kernel_sources.hpp"
+#include "opencl_error.hpp"
+
+#include <apsl/error.hpp>
+
+#include <algorithm>
+#include <set>
+
+namespace apsl::host {
+namespace {
+
+std::string_view source_text(std::string_view name) {
+    for (const KernelSource& source : kernel_sources())
+        if (source.name == name) return source.text;
+    throw Error(ErrorCode::kernel_build, "kernel source " + std::string(name) + " is not part of this build");
+}
+
+std::string line_directive(std::size_t line, std::string_view name) {
+    return "#line " + std::to_string(line) + " \"kernels/" + std::string(name) + "\"\n";
+}
+
+void append(std::string& out, std::string_view name, std::set<std::string_view>& included) {
+    if (!included.insert(name).second) return;
+    constexpr std::string_view directive = "#include \"";
+    out += line_directive(1, name);
+    std::string_view text = source_text(name);
+    for (std::size_t line = 1; !text.empty(); ++line) {
+        const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+        const std::string_view content = text.substr(0, end);
+        text.remove_prefix(end);
+        if (content.starts_with(directive)) {
+            const std::size_t quote = content.find('"', directive.size());
+            append(out, content.substr(directive.size(), quote - directive.size()), included);
+            out += line_directive(line + 1, name);
+        } else {
+            out += content;
+        }
+    }
+    out += '\n';
+}
+
+std::string first_error(const std::string& log) {
+    const std::size_t at = log.find("error:");
+    if (at == std::string::npos) return "see the build log";
+    const std::size_t begin = log.rfind('\n', at) == std::string::npos ? 0 : log.rfind('\n', at) + 1;
+    return log.substr(begin, log.find('\n', at) - begin);
+}
+
+}  // namespace
+
+std::string program_source(std::span<const std::string_view> files) {
+    std::string source;
+    std::set<std::string_view> included;
+    for (const std::string_view file : files) append(source, file, included);
+    return source;
+}
+
+ProgramHandle build_program(cl_context context, cl_device_id device, const std::string& source,
+                            const std::string& build_options) {
+    cl_int status = CL_SUCCESS;
+    const char* text = source.data();
+    const std::size_t length = source.size();
+    ProgramHandle program(clCreateProgramWithSource(context, 1, &text, &length, &status));
+    check(status, "creating the kernel program");
+    status = clBuildProgram(program.get(), 1, &device, build_options.c_str(), nullptr, nullptr);
+    if (status != CL_SUCCESS) {
+        std::size_t size = 0;
+        clGetProgramBuildInfo(program.get(), device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+        std::string log(size, '\0');
+        clGetProgramBuildInfo(program.get(), device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+        throw Error(ErrorCode::kernel_build,
+                    "building the kernels with \"" + build_options + "\" failed with " + opencl_status_name(status) +
+                        ": " + first_error(log),
+                    status, log);
+    }
+    return program;
+}
+
+}  // namespace apsl::host

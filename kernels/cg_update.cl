@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The vector part of a CG iteration, all of it in one pass. Reference: apsl::reference::conjugate_gradient.
+// Moves r, q, p, s, y read, r, p, s, y written: 36 B a triangle.
+#include "layout.h"
+#include "work_group.h"
+#include "conjugate_gradient.h"
+
+// Chronopoulos and Gear: β = γ_k / γ_{k−1}, α = γ_k / (δ_k − β γ_k / α_{k−1}). Step 0 where the matrix shows no positive
+// curvature along the direction (rounding on a singular system): the solve then stays where it is.
+static inline float2 cg_coefficients(float residual, float curvature, float previous_residual, float previous_step,
+                              int iteration) {
+    const float beta = iteration == 0 ? 0.0f : residual / previous_residual;
+    const float denominator = iteration == 0 ? curvature : curvature - beta * residual / previous_step;
+    const float step = residual / denominator;
+    const bool usable = denominator > 0.0f && isfinite(step) && isfinite(beta);
+    return usable ? (float2)(step, beta) : (float2)(0.0f, 0.0f);
+}
+
+APSL_KERNEL void cg_update(__global const apsl_cloth* cloths, __global apsl_solve_state* states,
+                           __global apsl_stats* stats, __global float* partials, __global float4* residual,
+                           __global const float4* product, __global float4* direction,
+                           __global float4* direction_product, __global float4* pressure, int iteration) {
+    APSL_SCRATCH;
+    const uint c = (uint)get_group_id(1);
+    const apsl_cloth cloth = cloths[c];
+    const uint groups = (uint)get_num_groups(0);
+    const uint slot = (uint)iteration & 1u;
+    const float curvature = sum_partials(partials, APSL_PARTIAL_CURVATURE, groups, scratch);
+    const float2 coefficients = cg_coefficients(states[c].residual[slot], curvature, states[c].residual[slot ^ 1u],
+                                                states[c].step[slot ^ 1u], iteration);
+    const float step = coefficients.x, beta = coefficients.y;
+    const bool iterating = states[c].iterating && step > 0.0f;
+
+    const uint begin = cloth.triangle_begin / 4u;
+    const apsl_range range = share_of((cloth.triangle_count + 3u) / 4u, iterating);
+    float4 squares = (float4)(0.0f);
+    for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE) {
+        const uint i = begin + n;
+        const float4 q = product[i];
+        float4 r = residual[i], p = r, s = q, y = (float4)(0.0f);
+        if (iteration != 0) {  // uniform; what a former solve left behind is never read
+            p += beta * direction[i];
+            s += beta * direction_product[i];
+            y = pressure[i];
+        }
+        y += step * p;
+        r -= step * s;
+        direction[i] = p;
+        direction_product[i] = s;
+        pressure[i] = y;
+        residual[i] = r;
+        squares += r * r;
+    }
+    const float sum = group_sum(squares.x + squares.y + squares.z + squares.w, scratch);
+
+    // A solve that has ended hands its residual on, so that both slots hold it.
+    if (get_local_id(0) == 0) {
+        const uint even = APSL_PARTIAL_RESIDUAL_EVEN;
+        const float own = partials_of(partials, even + slot, groups)[get_group_id(0)];
+        partials_of(partials, even + (slot ^ 1u), groups)[get_group_id(0)] = iterating ? sum : own;
+        if (get_group_id(0) == 0 && iterating) {
+            states[c].step[slot] = step;
+            states[c].has_pressure = 1;
+            stats[c].cg_iterations += 1;
+        }
+    }
+}

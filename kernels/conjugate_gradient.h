@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Conjugate Gradient with one reduction point an iteration (Chronopoulos and Gear 1989), stopped on the device.
+//
+// Iteration k, in the scaled unknowns of gradients.h, is two or three launches:
+//   (matrix-free, consistent)  gather_vertex_forces    u = ½ w Σ ĝ r
+//   *_apply_dot / *_spmv_dot                           q = A r, partial sums of r·q
+//   cg_update                                          p = r + βp, s = q + βs, y += αp, r −= αs, partial sums of r·r
+// The first of them decides for all whether the iteration is done (begin_iteration).
+#ifndef APSL_CONJUGATE_GRADIENT_H
+#define APSL_CONJUGATE_GRADIENT_H
+
+// True where iteration k has work to do: every group finds it out from the same partial sums, and the first group
+// publishes it, with γ_k, for the launches that follow.
+static inline bool begin_iteration(__global const apsl_parameters* parameters, __global apsl_solve_state* states,
+                            __global float* partials, int iteration, __local float* scratch) {
+    const uint c = (uint)get_group_id(1);
+    const uint slot = (uint)iteration & 1u;
+    const float residual =
+        sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
+    const bool iterating = !states[c].stopped && iteration < parameters[c].max_iterations &&
+                           residual > parameters[c].tolerance_squared * states[c].initial_residual;
+    if (get_group_id(0) == 0 && get_local_id(0) == 0) {
+        states[c].iterating = iterating ? 1 : 0;
+        states[c].residual[slot] = residual;
+    }
+    return iterating;
+}
+
+#endif

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// What host and kernels share: the structs in device memory, byte for byte. Formulas are not shared with the host.
+#ifndef APSL_LAYOUT_H
+#define APSL_LAYOUT_H
+
+#ifdef __OPENCL_C_VERSION__
+typedef uint apsl_uint;
+typedef int apsl_int;
+#else
+#include <cstdint>
+typedef std::uint32_t apsl_uint;
+typedef std::int32_t apsl_int;
+#endif
+
+// Where a cloth lies in the limiter's arrays. Fixed when the limiter is built.
+typedef struct {
+    apsl_uint vertex_begin;
+    apsl_uint vertex_count;
+    apsl_uint triangle_begin;  // in the limiter's arrays: a multiple of APSL_TRIANGLE_ALIGNMENT
+    apsl_uint triangle_count;
+    apsl_uint rest_area_begin;  // in the caller's arrays over triangles, which have no gaps
+    apsl_uint padding[3];
+} apsl_cloth;
+
+// One cloth's apsl::Parameters for the current call.
+typedef struct {
+    float time_step;           // s
+    float inverse_time_step;   // 1/s
+    float regularization;      // α
+    float target_area_change;  // |A − A⁰| / A⁰
+    float tolerance_squared;
+    apsl_int sub_steps;
+    apsl_int max_iterations;
+    apsl_int padding;
+} apsl_parameters;
+
+// apsl::Stats, written by the device.
+typedef struct {
+    apsl_int sub_steps;
+    apsl_int cg_iterations;
+    float residual;
+    float max_area_change;
+    float rms_area_change;
+    apsl_int status;
+} apsl_stats;
+
+#define APSL_STATUS_OK 0
+#define APSL_STATUS_NOT_CONVERGED 1
+#define APSL_STATUS_DIVERGED 2
+
+// Where a cloth's solve stands. Each field is written by one work-group in a launch that does not read it elsewhere.
+typedef struct {
+    apsl_int stopped;        // no further sub-step in this call
+    apsl_int iterating;      // this CG iteration does its work
+    float initial_residual;  // ‖b‖², norm of 1/(α diag G)
+    float residual[2];       // γ = ‖r‖², of even and of odd iterations
+    float step[2];           // CG step length, of even and of odd iterations
+    apsl_int has_pressure;   // the solve has done an iteration
+} apsl_solve_state;
+
+// Partial results of the work-groups of a launch, one float a group for each of these.
+#define APSL_PARTIAL_RESIDUAL_EVEN 0
+#define APSL_PARTIAL_RESIDUAL_ODD 1
+#define APSL_PARTIAL_CURVATURE 2  // r·Ar
+#define APSL_PARTIAL_MAX_CHANGE 3
+#define APSL_PARTIAL_SQUARED_CHANGE 4
+#define APSL_PARTIAL_MEASURED 5  // triangles with a rest area
+#define APSL_PARTIAL_NOT_FINITE 6
+#define APSL_PARTIAL_KINDS 7
+
+// Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
+#define APSL_TRIANGLE_ALIGNMENT 16
+
+// A corner in device memory: 4 · triangle + corner number, so that no division is needed.
+#define APSL_CORNER_TRIANGLE(corner) ((corner) >> 2)
+#define APSL_CORNER_NUMBER(corner) ((corner) & 3u)
+
+#endif

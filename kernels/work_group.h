@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// How a launch is divided, and how its results are summed, always in the same order: same input, same bytes.
+//
+// A launch has get_num_groups(0) work-groups for every cloth, and the cloths along dimension 1. Each group owns one
+// contiguous chunk; its work-items stride through it. With one work-item a group (what suits a CPU) that is a plain
+// loop; with many it is coalesced. Nothing depends on how many work-items run in lockstep.
+#ifndef APSL_WORK_GROUP_H
+#define APSL_WORK_GROUP_H
+
+#ifndef APSL_WORK_GROUP_SIZE
+#define APSL_WORK_GROUP_SIZE 64
+#endif
+
+#define APSL_KERNEL __kernel __attribute__((reqd_work_group_size(APSL_WORK_GROUP_SIZE, 1, 1)))
+
+typedef struct {
+    uint first, end;  // this work-item takes first, first + APSL_WORK_GROUP_SIZE, … below end
+} apsl_range;
+
+// This work-item's share of `count` elements, or nothing where the launch has nothing to do. Chunks begin at multiples
+// of 16 elements. An empty range, not an early return: barriers follow.
+static inline apsl_range share_of(uint count, bool active) {
+    const uint groups = (uint)get_num_groups(0);
+    const uint chunk = ((count + groups - 1u) / groups + 15u) & ~15u;
+    const uint begin = min((uint)get_group_id(0) * chunk, count);
+    apsl_range range;
+    range.end = active ? min(begin + chunk, count) : 0u;
+    range.first = begin + (uint)get_local_id(0);
+    return range;
+}
+
+#if APSL_WORK_GROUP_SIZE > 1
+#define APSL_SCRATCH __local float scratch[APSL_WORK_GROUP_SIZE]
+#else
+#define APSL_SCRATCH __local float scratch[1]
+#endif
+
+// Sum over the work-group, given to every work-item. Halving, over a power of two fixed at compile time.
+static inline float group_sum(float value, __local float* scratch) {
+#if APSL_WORK_GROUP_SIZE > 1
+    const uint l = (uint)get_local_id(0);
+    scratch[l] = value;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint half_size = APSL_WORK_GROUP_SIZE / 2; half_size > 0; half_size >>= 1) {
+        if (l < half_size) scratch[l] += scratch[l + half_size];
+        barrier(CLK_LOCAL_MEM_FENCE);
+    }
+    value = scratch[0];
+    barrier(CLK_LOCAL_MEM_FENCE);
+#endif
+    return value;
+}
+
+// Greatest over the work-group, given to every work-item.
+static inline float group_max(float value, __local float* scratch) {
+#if APSL_WORK_GROUP_SIZE > 1
+    const uint l = (uint)get_local_id(0);
+    scratch[l] = value;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint half_size = APSL_WORK_GROUP_SIZE / 2; half_size > 0; half_size >>= 1) {
+        if (l < half_size) scratch[l] = fmax(scratch[l], scratch[l + half_size]);
+        barrier(CLK_LOCAL_MEM_FENCE);
+    }
+    value = scratch[0];
+    barrier(CLK_LOCAL_MEM_FENCE);
+#endif
+    return value;
+}
+
+// The partial results of one kind, one float for each of `groups` groups, of the cloth of this work-group.
+static inline __global float* partials_of(__global float* partials, uint kind, uint groups) {
+    return partials + ((uint)get_group_id(1) * APSL_PARTIAL_KINDS + kind) * groups;
+}
+
+// Sum of a kind's partial results. Every group does it anew: cheaper than a launch in between.
+static inline float sum_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
+    __global const float* p = partials_of(partials, kind, groups);
+    float sum = 0.0f;
+    for (uint g = (uint)get_local_id(0); g < groups; g += APSL_WORK_GROUP_SIZE) sum += p[g];
+    return group_sum(sum, scratch);
+}
+
+static inline float max_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
+    __global const float* p = partials_of(partials, kind, groups);
+    float greatest = 0.0f;
+    for (uint g = (uint)get_local_id(0); g < groups; g += APSL_WORK_GROUP_SIZE) greatest = fmax(greatest, p[g]);
+    return group_max(greatest, scratch);
+}
+
+// Stores this group's partial result.
+static inline void store_partial(__global float* partials, uint kind, float value) {
+    if (get_local_id(0) == 0)
+        partials_of(partials, kind, (uint)get_num_groups(0))[get_group_id(0)] = value;
+}
+
+#endif
