@@ -2,9 +2,9 @@
 // Areas, right-hand side of Eq. (5) and scaled corner gradients: everything a solve needs of the geometry.
 // Reference: apsl::reference::corner_gradients, areas, and the diagonal of Eq. (3).
 // Moves 12 B indices, about 8 B positions, 4 B rest area read; 32 B gradients, 4 B residual written, a triangle.
+#include "gradients.h"
 #include "layout.h"
 #include "work_group.h"
-#include "gradients.h"
 
 #ifndef APSL_REGULARIZATION_PER_TRIANGLE
 #define APSL_REGULARIZATION_PER_TRIANGLE 0
@@ -71,7 +71,8 @@ static inline void store_area_partials(apsl_area_sums sums, __global float* part
     store_partial(partials, APSL_PARTIAL_NOT_FINITE, group_sum(sums.not_finite, scratch));
 }
 
-static inline apsl_triangle_geometry load_triangle(__global const uint* triangles, __global const float4* predicted, uint a) {
+static inline apsl_triangle_geometry load_triangle(__global const uint* triangles, __global const float4* predicted,
+                                                   uint a) {
     const uint3 v = vload3(a, triangles);
     return triangle_geometry(predicted[v.x], predicted[v.y], predicted[v.z]);
 }

@@ -2,10 +2,10 @@
 // The scaled matrix S (G + (α − 1) D) S in CSR form, one row a triangle.
 // Reference: apsl::reference::consistent_matrix, printed_matrix, regularize.
 // Moves about 13 × (4 + 1) B pattern and 13 gathered gradients (32 B, mostly from cache) read, 13 × 4 B written a row.
-#include "layout.h"
-#include "work_group.h"
 #include "gradients.h"
+#include "layout.h"
 #include "matrix_entries.h"
+#include "work_group.h"
 
 APSL_KERNEL void assemble_pressure_csr(__global const apsl_cloth* cloths, __global const apsl_solve_state* states,
                                        __global const uint* triangles, __global const float4* predicted,

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The vector part of a CG iteration, all of it in one pass. Reference: apsl::reference::conjugate_gradient.
 // Moves r, q, p, s, y read, r, p, s, y written: 36 B a triangle.
+#include "conjugate_gradient.h"
 #include "layout.h"
 #include "work_group.h"
-#include "conjugate_gradient.h"
 
-// Chronopoulos and Gear: β = γ_k / γ_{k−1}, α = γ_k / (δ_k − β γ_k / α_{k−1}). Step 0 where the matrix shows no positive
-// curvature along the direction (rounding on a singular system): the solve then stays where it is.
+// Chronopoulos and Gear: β = γ_k / γ_{k−1}, α = γ_k / (δ_k − β γ_k / α_{k−1}). Step 0 where the matrix shows no
+// positive curvature along the direction (rounding on a singular system): the solve then stays where it is.
 static inline float2 cg_coefficients(float residual, float curvature, float previous_residual, float previous_step,
-                              int iteration) {
+                                     int iteration) {
     const float beta = iteration == 0 ? 0.0f : residual / previous_residual;
     const float denominator = iteration == 0 ? curvature : curvature - beta * residual / previous_step;
     const float step = residual / denominator;

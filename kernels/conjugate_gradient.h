@@ -12,11 +12,10 @@
 // True where iteration k has work to do: every group finds it out from the same partial sums, and the first group
 // publishes it, with γ_k, for the launches that follow.
 static inline bool begin_iteration(__global const apsl_parameters* parameters, __global apsl_solve_state* states,
-                            __global float* partials, int iteration, __local float* scratch) {
+                                   __global float* partials, int iteration, __local float* scratch) {
     const uint c = (uint)get_group_id(1);
     const uint slot = (uint)iteration & 1u;
-    const float residual =
-        sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
+    const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     const bool iterating = !states[c].stopped && iteration < parameters[c].max_iterations &&
                            residual > parameters[c].tolerance_squared * states[c].initial_residual;
     if (get_group_id(0) == 0 && get_local_id(0) == 0) {

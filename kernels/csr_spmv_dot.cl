@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // q = A r from the assembled rows, partial sums of r·q. Reference: Eigen's sparse product.
 // Moves 13 × (4 + 4) B entries, 4 B row offset, 4 B r read, 4 B written a row of the consistent matrix.
+#include "conjugate_gradient.h"
 #include "layout.h"
 #include "work_group.h"
-#include "conjugate_gradient.h"
 
 APSL_KERNEL void csr_spmv_dot(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
                               __global apsl_solve_state* states, __global float* partials,

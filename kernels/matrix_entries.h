@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Entries of the scaled matrix, from scaled gradients. `shared` says how two triangles meet: two bits for each corner of
-// the first, holding the matching corner of the second, 3 where there is none (apsl::CsrPattern::shared).
+// Entries of the scaled matrix, from scaled gradients. `shared` says how two triangles meet: two bits for each corner
+// of the first, holding the matching corner of the second, 3 where there is none (apsl::CsrPattern::shared).
 #ifndef APSL_MATRIX_ENTRIES_H
 #define APSL_MATRIX_ENTRIES_H
 
@@ -61,8 +61,8 @@ static inline float4 corner_inverse_masses(__global const uint* triangles, __glo
 
 // One entry of row a, whose own gradients and inverse masses are at hand.
 static inline float matrix_entry(__global const uint* triangles, __global const float4* predicted,
-                          __global const apsl_gradients* gradients, uint a, apsl_gradients ga, float4 wa, uint column,
-                          uint shared) {
+                                 __global const apsl_gradients* gradients, uint a, apsl_gradients ga, float4 wa,
+                                 uint column, uint shared) {
     if (column == a) return diagonal_entry(ga, wa);
 #if APSL_MATRIX == APSL_PRINTED
     const float4 wc = corner_inverse_masses(triangles, predicted, column);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // q = A r for the consistent matrix without assembling it: A = J̃ ½W J̃ᵀ + diag((α − 1)/α), one pass over the vertices
 // and one over the triangles. Reference: apsl::reference::consistent_matrix times a vector.
-#include "layout.h"
-#include "work_group.h"
-#include "gradients.h"
 #include "conjugate_gradient.h"
+#include "gradients.h"
+#include "layout.h"
 #include "vertex_gather.h"
+#include "work_group.h"
 
 // u_i = ½ w_i Σ_{a∋i} r_a ĝ_{a,i}. Moves 12 B corners, 2 B offsets, 32 B gradients, 4 B r read, 8 B written a triangle.
 APSL_KERNEL void gather_vertex_forces(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
@@ -19,8 +19,7 @@ APSL_KERNEL void gather_vertex_forces(__global const apsl_cloth* cloths, __globa
     const apsl_range range = share_of(cloth.vertex_count, iterating);
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint i = cloth.vertex_begin + v;
-        vertex_forces[i] =
-            0.5f * predicted[i].w * sum_over_corners(corner_offsets, corners, gradients, residual, i);
+        vertex_forces[i] = 0.5f * predicted[i].w * sum_over_corners(corner_offsets, corners, gradients, residual, i);
     }
 }
 
@@ -28,9 +27,8 @@ APSL_KERNEL void gather_vertex_forces(__global const apsl_cloth* cloths, __globa
 // Moves 12 B indices, 8 B forces, 32 B gradients, 4 B r read, 4 B written a triangle.
 APSL_KERNEL void matrix_free_apply_dot(__global const apsl_cloth* cloths, __global const apsl_solve_state* states,
                                        __global float* partials, __global const uint* triangles,
-                                       __global const apsl_gradients* gradients,
-                                       __global const float4* vertex_forces, __global const float* residual,
-                                       __global float* product) {
+                                       __global const apsl_gradients* gradients, __global const float4* vertex_forces,
+                                       __global const float* residual, __global float* product) {
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const apsl_cloth cloth = cloths[c];
@@ -43,8 +41,8 @@ APSL_KERNEL void matrix_free_apply_dot(__global const apsl_cloth* cloths, __glob
         // The third gradient is minus the sum of the first two.
         const float4 u2 = vertex_forces[v.z];
         const float r = residual[a];
-        const float q = dot3(g.g0_shift, vertex_forces[v.x] - u2) + dot3(g.g1_scale, vertex_forces[v.y] - u2) +
-                        g.g0_shift.w * r;
+        const float q =
+            dot3(g.g0_shift, vertex_forces[v.x] - u2) + dot3(g.g1_scale, vertex_forces[v.y] - u2) + g.g0_shift.w * r;
         product[a] = q;
         curvature += r * q;
     }

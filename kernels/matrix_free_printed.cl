@@ -3,11 +3,11 @@
 // Reference: apsl::reference::printed_matrix times a vector.
 // Moves 4 × (4 + 1) B pattern, 4 B row offset, 12 B indices, about 5 × 32 B gradients (mostly from cache) a row.
 #define APSL_MATRIX 1
-#include "layout.h"
-#include "work_group.h"
-#include "gradients.h"
-#include "matrix_entries.h"
 #include "conjugate_gradient.h"
+#include "gradients.h"
+#include "layout.h"
+#include "matrix_entries.h"
+#include "work_group.h"
 
 APSL_KERNEL void matrix_free_apply_dot(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
                                        __global apsl_solve_state* states, __global float* partials,
@@ -27,8 +27,7 @@ APSL_KERNEL void matrix_free_apply_dot(__global const apsl_cloth* cloths, __glob
         const uint end = row_offsets[a + 1];
         float q = 0.0f;
         for (uint e = row_offsets[a]; e < end; ++e)
-            q += matrix_entry(triangles, predicted, gradients, a, ga, wa, columns[e], shared[e]) *
-                 residual[columns[e]];
+            q += matrix_entry(triangles, predicted, gradients, a, ga, wa, columns[e], shared[e]) * residual[columns[e]];
         product[a] = q;
         curvature += residual[a] * q;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Algorithm 1, output: ṽ ← ṽ + (x − (x̃ + Δt ṽ)) / Δt. Only the corrections go in: with x the predicted position, the line
-// as printed would count Δt ṽ twice. Reference: apsl::reference::update_velocities.
-// Moves 16 B + 24 B read, 12 B written a vertex (strides of 3).
+// Algorithm 1, output: ṽ ← ṽ + (x − (x̃ + Δt ṽ)) / Δt. Only the corrections go in: with x the predicted position, the
+// line as printed would count Δt ṽ twice. Reference: apsl::reference::update_velocities. Moves 16 B + 24 B read, 12 B
+// written a vertex (strides of 3).
 #include "layout.h"
 #include "work_group.h"
 

@@ -89,8 +89,7 @@ static inline float max_partials(__global float* partials, uint kind, uint group
 
 // Stores this group's partial result.
 static inline void store_partial(__global float* partials, uint kind, float value) {
-    if (get_local_id(0) == 0)
-        partials_of(partials, kind, (uint)get_num_groups(0))[get_group_id(0)] = value;
+    if (get_local_id(0) == 0) partials_of(partials, kind, (uint)get_num_groups(0))[get_group_id(0)] = value;
 }
 
 #endif
