@@ -9,6 +9,9 @@
 #ifndef APSL_CONJUGATE_GRADIENT_H
 #define APSL_CONJUGATE_GRADIENT_H
 
+#include "layout.h"
+#include "work_group.h"
+
 // True where iteration k has work to do: every group finds it out from the same partial sums, and the first group
 // publishes it, with γ_k, for the launches that follow.
 static inline bool begin_iteration(__global const apsl_parameters* parameters, __global apsl_solve_state* states,

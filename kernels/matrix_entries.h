@@ -4,6 +4,8 @@
 #ifndef APSL_MATRIX_ENTRIES_H
 #define APSL_MATRIX_ENTRIES_H
 
+#include "gradients.h"
+
 #define APSL_CONSISTENT 0
 #define APSL_PRINTED 1
 #ifndef APSL_MATRIX

@@ -4,6 +4,9 @@
 #ifndef APSL_VERTEX_GATHER_H
 #define APSL_VERTEX_GATHER_H
 
+#include "gradients.h"
+#include "layout.h"
+
 // Σ_{a∋i} values_a ĝ_{a,i}; w is zero.
 static inline float4 sum_over_corners(__global const uint* corner_offsets, __global const uint* corners,
                                       __global const apsl_gradients* gradients, __global const float* values, uint i) {

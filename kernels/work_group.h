@@ -7,6 +7,8 @@
 #ifndef APSL_WORK_GROUP_H
 #define APSL_WORK_GROUP_H
 
+#include "layout.h"
+
 #ifndef APSL_WORK_GROUP_SIZE
 #define APSL_WORK_GROUP_SIZE 64
 #endif
