@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "run/opencl_filter.hpp"
+#include "run/reference_filter.hpp"
+
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace apsl::scenes {
+
+enum class Backend { opencl, reference };
+
+/// The strain limiting of a scene, or std::monostate where the scene names none: then no device is looked for.
+using FilterStage = std::variant<std::monostate, OpenClFilter, ReferenceFilter>;
+
+/// `device`: set for Backend::opencl. Throws InputError for a list of regularizations that does not fit the mesh.
+inline FilterStage make_filter_stage(const Scene& scene, const ClothState& cloth, Backend backend,
+                                     const std::optional<OpenClDevice>& device, bool profile) {
+    if (!scene.strain_limiting) return std::monostate{};
+    const std::size_t given = scene.strain_limiting->regularization.size();
+    if (given != 0 && given != cloth.topology->triangle_count()) {
+        throw InputError(scene.file + ": strain_limiting.regularization: expected one number or one for each of " +
+                         std::to_string(cloth.topology->triangle_count()) + " triangles, got " + std::to_string(given));
+    }
+    if (backend == Backend::reference) return ReferenceFilter(cloth, *scene.strain_limiting);
+    return OpenClFilter(device.value(), cloth, *scene.strain_limiting, profile);
+}
+
+}  // namespace apsl::scenes

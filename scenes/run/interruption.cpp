@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "run/interruption.hpp"
+
+#include <csignal>
+
+namespace apsl::scenes {
+namespace {
+
+volatile std::sig_atomic_t noted = 0;
+
+void note(int) {
+    noted = 1;
+}
+
+}  // namespace
+
+void note_interruptions() {
+    struct sigaction action = {};
+    action.sa_handler = note;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() {
+    return noted != 0;
+}
+
+}  // namespace apsl::scenes

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "run/commands.hpp"
+#include "run/input_error.hpp"
+
+#include <apsl/error.hpp>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <new>
+#include <string>
+
+namespace {
+
+using namespace apsl::scenes;
+
+int wrong_input(std::string what) {
+    // One line, whatever the message was made of.
+    what = what.substr(0, what.find_last_not_of("\n\r ") + 1);
+    for (char& letter : what) {
+        if (letter == '\n' || letter == '\r') letter = ' ';
+    }
+    std::fprintf(stderr, "error: %s\n", what.c_str());
+    return kExitWrongInput;
+}
+
+int parse_and_run(int argument_count, char** arguments) {
+    CLI::App program{"Cloth scenes with area preserving strain limiting.", "apsl"};
+    program.set_version_flag("--version", std::string("apsl ") + APSL_PROGRAM_VERSION);
+    program.require_subcommand(1);
+    program.footer(
+        "apsl COMMAND --help lists a command's options.\n"
+        "Exit: 0 done, 1 the simulation broke down (the report says where), 2 wrong input.\n"
+        "Example: apsl run scenes/curtain.json --out out/curtain");
+
+    RunOptions options;
+    CLI::App* run = program.add_subcommand("run", "simulate a scene");
+    run->add_option("SCENE", options.scene, "scene file, JSON")->required();
+    const std::map<std::string, Backend> backends{{"opencl", Backend::opencl}, {"reference", Backend::reference}};
+    run->add_option("--backend", options.backend, "opencl (default) or reference: this processor, 64 bits")
+        ->transform(CLI::CheckedTransformer(backends).description(""));
+    run->add_option("--device", options.device, "a number from apsl devices; default the first GPU, else 0");
+    run->add_option("--frames", options.frames, "instead of the scene's")
+        ->check(CLI::Range(1, 2'000'000'000).description(""));
+    run->add_option("--out", options.out, "folder for frames (ParaView, Blender) and report.json");
+    run->add_option("--report", options.report, "report file, JSON");
+    run->add_option("--set", options.overrides, "path=value: change a value of the scene, may be repeated")
+        ->take_all()
+        ->allow_extra_args(false);
+    run->add_flag("--profile", options.profile, "time each kernel on the device");
+
+    program.add_subcommand("devices", "list the OpenCL devices and their numbers");
+
+    CLI::App* validate = program.add_subcommand("validate", "check a scene and its mesh, simulate nothing");
+    validate->add_option("SCENE", options.scene, "scene file, JSON")->required();
+    validate->add_option("--set", options.overrides, "path=value: change a value of the scene, may be repeated")
+        ->take_all()
+        ->allow_extra_args(false);
+
+    try {
+        program.parse(argument_count, arguments);
+    } catch (const CLI::Success& success) {
+        return program.exit(success);  // --help and --version
+    } catch (const CLI::ParseError& error) {
+        return wrong_input(std::string(error.what()) + " (see apsl --help)");
+    }
+    if (run->parsed()) return run_command(options);
+    if (validate->parsed()) return validate_command(options.scene, options.overrides);
+    return devices_command();
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+    try {
+        return parse_and_run(argument_count, arguments);
+    } catch (const InputError& error) {
+        return wrong_input(error.what());
+    } catch (const apsl::Error& error) {
+        return wrong_input(error.what());
+    } catch (const std::bad_alloc&) {
+        return wrong_input("not enough memory for this scene");
+    } catch (const std::exception& error) {
+        return wrong_input(error.what());
+    }
+}

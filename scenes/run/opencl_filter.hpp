@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "pipeline/cloth_state.hpp"
+#include "run/opencl_devices.hpp"
+#include "run/opencl_handles.hpp"
+#include "run/scene.hpp"
+
+#include <apsl/strain_limiter.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace apsl::scenes {
+
+/// apsl::StrainLimiter in a context, queue and buffers of the program's own: what an embedding program does, with the
+/// rest of its pipeline on the host.
+class OpenClFilter {
+public:
+    /// Compiles, allocates, uploads what stays the same. Throws InputError (an OpenCL call failed) and Error.
+    OpenClFilter(const OpenClDevice& device, const ClothState& cloth, const StrainLimiting& settings, bool profile);
+
+    /// Filters the cloth's velocities and waits for the result.
+    Stats filter(ClothState& cloth);
+
+    const std::string& device_name() const { return device_name_; }
+    /// The limiter's memory and the buffers here.
+    std::size_t device_bytes() const;
+    /// Device time by kernel, since the last call; only with `profile`.
+    std::vector<KernelTime> kernel_times() { return limiter_.profile(); }
+
+private:
+    OwnedBuffer make_buffer(const std::vector<float>& values, const std::string& name);
+
+    std::string device_name_;
+    Parameters parameters_;
+    OwnedContext context_;
+    OwnedQueue queue_;
+    StrainLimiter limiter_;
+    std::size_t buffer_bytes_ = 0;
+    OwnedBuffer positions_;
+    OwnedBuffer velocities_;
+    OwnedBuffer inverse_masses_;
+    OwnedBuffer rest_areas_;
+    OwnedBuffer regularization_;
+    std::vector<float> uploaded_positions_;   // [3V]
+    std::vector<float> uploaded_velocities_;  // [3V]
+    std::vector<float> filtered_velocities_;  // [3V]
+    Stats stats_{};
+};
+
+}  // namespace apsl::scenes

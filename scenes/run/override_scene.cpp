@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "run/override_scene.hpp"
+
+#include "run/input_error.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace apsl::scenes {
+namespace {
+
+// "pins[0].box" and "pins.0.box" are the same path.
+std::vector<std::string> split_path(std::string path) {
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        if (path[k] == '[') path[k] = '.';
+        if (path[k] == ']') path.erase(k--, 1);
+    }
+    std::vector<std::string> keys;
+    for (std::size_t first = 0; first <= path.size();) {
+        const std::size_t end = std::min(path.find('.', first), path.size());
+        keys.push_back(path.substr(first, end - first));
+        first = end + 1;
+    }
+    return keys;
+}
+
+std::optional<std::size_t> as_index(const std::string& key) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+    return error == std::errc{} && end == key.data() + key.size() ? std::optional(index) : std::nullopt;
+}
+
+// A mesh that is a grid becomes a file by --set mesh.file=..., without taking the grid out first.
+void replace_other_kinds(nlohmann::json& document, const std::vector<std::string>& path) {
+    const std::vector<std::string> meshes{"grid", "tube", "file"};
+    const std::vector<std::string> integrators{"implicit_springs", "stand_alone", "none"};
+    if (path.size() < 2 || !document.contains(path[0]) || !document[path[0]].is_object()) return;
+    const std::vector<std::string>& kinds = path[0] == "mesh" ? meshes : integrators;
+    if (path[0] != "mesh" && path[0] != "integrator") return;
+    if (std::find(kinds.begin(), kinds.end(), path[1]) == kinds.end()) return;
+    for (const std::string& kind : kinds) {
+        if (kind != path[1]) document[path[0]].erase(kind);
+    }
+    if (path[0] == "mesh" && path[1] != "file") document[path[0]].erase("height");
+}
+
+}  // namespace
+
+void override_scene(nlohmann::json& document, const std::string& assignment) {
+    const std::size_t equals = assignment.find('=');
+    const std::vector<std::string> path = split_path(assignment.substr(0, equals));
+    if (equals == std::string::npos || std::find(path.begin(), path.end(), "") != path.end()) {
+        throw InputError("--set " + assignment + ": expected path=value, such as strain_limiting.regularization=1.05");
+    }
+    nlohmann::json value = nlohmann::json::parse(assignment.substr(equals + 1), nullptr, false);
+    if (value.is_discarded()) value = assignment.substr(equals + 1);
+
+    replace_other_kinds(document, path);
+    nlohmann::json* place = &document;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        const bool last = k + 1 == path.size();
+        if (place->is_null()) *place = nlohmann::json::object();
+        if (place->is_object()) {
+            if (last && value.is_null()) {
+                place->erase(path[k]);
+                return;
+            }
+            place = &(*place)[path[k]];
+        } else if (const auto index = as_index(path[k]); place->is_array() && index && *index <= place->size()) {
+            if (*index == place->size()) place->push_back(nullptr);
+            if (last && value.is_null()) {
+                place->erase(*index);
+                return;
+            }
+            place = &(*place)[*index];
+        } else {
+            throw InputError("--set " + assignment + ": there is no \"" + path[k] + "\" in " + place->dump());
+        }
+    }
+    *place = std::move(value);
+    if (path == std::vector<std::string>{"mesh", "file"} && place->is_string()) {
+        *place = std::filesystem::absolute(place->get<std::string>()).lexically_normal().string();
+    }
+}
+
+}  // namespace apsl::scenes

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace apsl::scenes {
+
+/// Changes one value of a scene: "strain_limiting.regularization=1.05", "pins[0].motion.rotate.degrees_per_second=30".
+/// Missing objects on the way are made; an array takes an index up to its size. The value is JSON, or else text; null
+/// takes the key out. Naming one kind of mesh or integrator puts it in place of the other kinds. A mesh file given
+/// here is relative to the working directory, as everything else on a command line is.
+/// Throws InputError where there is no "=", or where the path runs through something that has no such entry.
+void override_scene(nlohmann::json& document, const std::string& assignment);
+
+}  // namespace apsl::scenes

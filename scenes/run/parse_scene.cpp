@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include "run/parse_scene.hpp"
+
+#include "run/input_error.hpp"
+#include "run/override_scene.hpp"
+#include "run/scene_object.hpp"
+
+#include <apsl/error.hpp>
+
+#include <fstream>
+#include <limits>
+
+namespace apsl::scenes {
+namespace {
+
+constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+
+std::array<std::uint32_t, 2> counts(SceneObject& object, const std::string& key,
+                                    const std::array<std::uint32_t, 2>& fallback,
+                                    const std::array<std::int64_t, 2>& min) {
+    const SceneValue value = object.find(key);
+    if (value.json == nullptr) return fallback;
+    const std::vector<SceneValue> entries = value.entries();
+    if (entries.size() != 2) value.expected("two whole numbers");
+    // A million each way is beyond what 32-bit corner numbers can hold, together they are checked by the topology.
+    return {static_cast<std::uint32_t>(entries[0].integer(min[0], 1'000'000)),
+            static_cast<std::uint32_t>(entries[1].integer(min[1], 1'000'000))};
+}
+
+std::array<double, 2> positive_pair(SceneObject& object, const std::string& key,
+                                    const std::array<double, 2>& fallback) {
+    const SceneValue value = object.find(key);
+    if (value.json == nullptr) return fallback;
+    const std::vector<SceneValue> entries = value.entries();
+    if (entries.size() != 2) value.expected("two numbers");
+    return {entries[0].number(Range::above(0.0)), entries[1].number(Range::above(0.0))};
+}
+
+Diagonals parse_diagonals(SceneObject& object, Diagonals fallback) {
+    return object.choice(
+        "diagonals", fallback,
+        {{"uniform", Diagonals::uniform}, {"alternating", Diagonals::alternating}, {"random", Diagonals::random}});
+}
+
+// Corners of triangles are numbered in 32 bits (Topology::build).
+void check_triangle_count(const SceneObject& object, double cells) {
+    if (2.0 * cells * 3.0 >= 0x1p32) object.value().fail("more than 2³² / 3 triangles");
+}
+
+GridMesh parse_grid(SceneObject object) {
+    GridMesh grid;
+    grid.vertices = counts(object, "vertices", grid.vertices, {2, 2});
+    grid.size = positive_pair(object, "size", grid.size);
+    grid.diagonals = parse_diagonals(object, grid.diagonals);
+    grid.jitter = object.number("jitter", grid.jitter, Range::from_to_below(0.0, 1.0));
+    grid.plane =
+        object.choice("plane", grid.plane, {{"horizontal", GridPlane::horizontal}, {"vertical", GridPlane::vertical}});
+    object.refuse_other_keys();
+    check_triangle_count(object, (grid.vertices[0] - 1.0) * (grid.vertices[1] - 1.0));
+    return grid;
+}
+
+TubeMesh parse_tube(SceneObject object) {
+    TubeMesh tube;
+    tube.radius = positive_pair(object, "radius", tube.radius);
+    tube.height = object.number("height", tube.height, Range::above(0.0));
+    tube.segments = counts(object, "segments", tube.segments, {3, 1});
+    tube.diagonals = parse_diagonals(object, tube.diagonals);
+    tube.jitter = object.number("jitter", tube.jitter, Range::from_to_below(0.0, 1.0));
+    object.refuse_other_keys();
+    check_triangle_count(object, 1.0 * tube.segments[0] * tube.segments[1]);
+    return tube;
+}
+
+MeshSource parse_mesh(SceneObject object, const std::filesystem::path& folder) {
+    MeshFile source;
+    const SceneValue file = object.find("file");
+    const SceneValue height = object.find("height");
+    const std::string kind = object.only_one_of({"grid", "tube", "file"});
+    if (height.json != nullptr && kind != "file") height.fail("only a mesh from a file is scaled to a height");
+    if (kind == "grid") return parse_grid(SceneObject(object.find("grid")));
+    if (kind == "tube") return parse_tube(SceneObject(object.find("tube")));
+    source.file = folder / file.text();
+    if (height.json != nullptr) source.height = height.number(Range::above(0.0));
+    return source;
+}
+
+PinMotion parse_motion(SceneObject object) {
+    PinMotion motion;
+    motion.start = object.number("start", motion.start, Range::at_least(0.0));
+    motion.stop = object.number("stop", motion.stop, Range::at_least(motion.start));
+    const std::string kind = object.only_one_of({"rotate", "translate"});
+    SceneObject path(object.find(kind));
+    if (kind == "rotate") {
+        PinRotation rotation;
+        rotation.axis = path.vector3("axis", rotation.axis);
+        rotation.degrees_per_second = path.number("degrees_per_second", rotation.degrees_per_second);
+        if (path.has("center")) rotation.center = path.vector3("center", {});
+        if (rotation.axis == std::array<double, 3>{}) path.find("axis").fail("expected an axis of any length but 0");
+        motion.path = rotation;
+    } else {
+        motion.path = PinTranslation{path.vector3("velocity", {})};
+    }
+    path.refuse_other_keys();
+    return motion;
+}
+
+Pin parse_pin(SceneObject object) {
+    Pin pin;
+    if (object.has("motion")) pin.motion = parse_motion(SceneObject(object.find("motion")));
+    const std::string kind = object.only_one_of({"vertices", "corners", "box"});
+    const SceneValue value = object.find(kind);
+    if (kind == "vertices") {
+        PinnedVertices selection;
+        for (const SceneValue& vertex : value.entries()) {
+            selection.vertices.push_back(static_cast<std::uint32_t>(vertex.integer(0, kMaxCount)));
+        }
+        pin.selection = std::move(selection);
+    } else if (kind == "corners") {
+        PinnedCorners selection;
+        for (const SceneValue& corner : value.entries()) selection.corners.push_back(corner.text());
+        pin.selection = std::move(selection);
+    } else {
+        SceneObject box_object(value);
+        PinnedBox box;
+        box.min = box_object.vector3("min", box.min);
+        box.max = box_object.vector3("max", box.max);
+        box_object.refuse_other_keys();
+        pin.selection = box;
+    }
+    return pin;
+}
+
+Integrator parse_integrator(SceneObject object) {
+    const std::string kind = object.only_one_of({"implicit_springs", "stand_alone", "none"});
+    SceneObject settings(object.find(kind));
+    Integrator integrator;
+    if (kind == "implicit_springs") {
+        ImplicitSpringsIntegrator springs;
+        springs.stretch_stiffness =
+            settings.number("stretch_stiffness", springs.stretch_stiffness, Range::at_least(0.0));
+        springs.bend_stiffness = settings.number("bend_stiffness", springs.bend_stiffness, Range::at_least(0.0));
+        springs.damping = settings.number("damping", springs.damping, Range::at_least(0.0));
+        integrator = springs;
+    } else if (kind == "stand_alone") {
+        StandAloneIntegrator springs;
+        springs.bend_stiffness = settings.number("bend_stiffness", springs.bend_stiffness, Range::at_least(0.0));
+        springs.damping = settings.number("damping", springs.damping, Range::at_least(0.0));
+        integrator = springs;
+    }
+    settings.refuse_other_keys();
+    return integrator;
+}
+
+StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
+    StrainLimiting settings;
+    Parameters& parameters = settings.parameters;
+    settings.matrix =
+        object.choice("matrix", settings.matrix, {{"consistent", Matrix::consistent}, {"printed", Matrix::printed}});
+    settings.apply = object.choice("apply", settings.apply,
+                                   {{"assembled_csr", Apply::assembled_csr}, {"matrix_free", Apply::matrix_free}});
+    const SceneValue regularization = object.find("regularization");
+    if (regularization.json != nullptr && regularization.json->is_array()) {
+        for (const SceneValue& entry : regularization.entries()) {
+            settings.regularization.push_back(static_cast<float>(entry.number(Range::at_least(1.0))));
+        }
+    } else {
+        parameters.regularization =
+            static_cast<float>(object.number("regularization", parameters.regularization, Range::at_least(1.0)));
+    }
+    parameters.time_step = static_cast<float>(time_step);
+    parameters.sub_steps = static_cast<std::int32_t>(object.integer("sub_steps", parameters.sub_steps, 0, kMaxCount));
+    parameters.target_area_change =
+        static_cast<float>(object.number("target_area_change", parameters.target_area_change, Range::at_least(0.0)));
+    parameters.tolerance =
+        static_cast<float>(object.number("tolerance", parameters.tolerance, Range::from_to_below(0.0, 1.0)));
+    parameters.max_iterations =
+        static_cast<std::int32_t>(object.integer("max_iterations", parameters.max_iterations, 1, kMaxCount));
+    object.refuse_other_keys();
+    try {
+        validate(parameters);  // what 32-bit floats make of the numbers
+    } catch (const Error& error) {
+        object.value().fail(error.what());
+    }
+    return settings;
+}
+
+Contact parse_contact(SceneObject& object) {
+    Contact contact;
+    contact.friction = object.number("friction", contact.friction, Range::at_least(0.0));
+    contact.thickness = object.number("thickness", contact.thickness, Range::at_least(0.0));
+    return contact;
+}
+
+Collider parse_collider(SceneObject object) {
+    const std::string kind = object.only_one_of({"sphere", "plane", "capsule"});
+    SceneObject shape(object.find(kind));
+    Collider collider;
+    if (kind == "sphere") {
+        Sphere sphere;
+        sphere.center = shape.vector3("center", sphere.center);
+        sphere.radius = shape.number("radius", 0.3, Range::above(0.0));
+        sphere.contact = parse_contact(shape);
+        collider = sphere;
+    } else if (kind == "plane") {
+        Plane plane;
+        plane.point = shape.vector3("point", plane.point);
+        plane.normal = shape.vector3("normal", plane.normal);
+        plane.contact = parse_contact(shape);
+        collider = plane;
+    } else {
+        Capsule capsule;
+        capsule.a = shape.vector3("a", {-0.3, 0.0, 0.0});
+        capsule.b = shape.vector3("b", {0.3, 0.0, 0.0});
+        capsule.radius = shape.number("radius", 0.1, Range::above(0.0));
+        capsule.contact = parse_contact(shape);
+        collider = capsule;
+    }
+    shape.refuse_other_keys();
+    try {
+        validate(collider);
+    } catch (const Error& error) {
+        shape.value().fail(error.what());
+    }
+    return collider;
+}
+
+}  // namespace
+
+Scene parse_scene(const nlohmann::json& document, const std::string& file) {
+    SceneObject object({&document, file, ""});
+    Scene scene;
+    scene.file = file;
+    if (!object.has("mesh")) object.value().fail("mesh is missing, expected one of grid, tube, file in it");
+    scene.mesh = parse_mesh(SceneObject(object.find("mesh")), std::filesystem::path(file).parent_path());
+    scene.density = object.number("density", scene.density, Range::above(0.0));
+    if (object.has("pins")) {
+        for (const SceneValue& pin : object.find("pins").entries()) scene.pins.push_back(parse_pin(SceneObject(pin)));
+    }
+    scene.gravity = object.vector3("gravity", scene.gravity);
+    scene.time_step = object.number("time_step", scene.time_step, Range::above(0.0));
+    scene.steps_per_frame = static_cast<int>(object.integer("steps_per_frame", scene.steps_per_frame, 1, kMaxCount));
+    scene.frames = static_cast<int>(object.integer("frames", scene.frames, 1, kMaxCount));
+    if (object.has("integrator")) scene.integrator = parse_integrator(SceneObject(object.find("integrator")));
+    if (object.has("strain_limiting")) {
+        scene.strain_limiting = parse_strain_limiting(SceneObject(object.find("strain_limiting")), scene.time_step);
+    }
+    if (object.has("colliders")) {
+        for (const SceneValue& collider : object.find("colliders").entries()) {
+            scene.colliders.push_back(parse_collider(SceneObject(collider)));
+        }
+    }
+    object.refuse_other_keys();
+    return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
+    if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such scene file");
+    std::ifstream stream(file);
+    if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
+    nlohmann::json document;
+    try {
+        document = nlohmann::json::parse(stream);
+    } catch (const nlohmann::json::exception& error) {
+        std::string reason = error.what();  // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
+        if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
+        for (char& letter : reason) {
+            if (letter == '\n' || letter == '\r') letter = ' ';
+        }
+        throw InputError(file.string() + ": not valid JSON: " + reason);
+    }
+    for (const std::string& assignment : overrides) override_scene(document, assignment);
+    return parse_scene(document, file.string());
+}
+
+}  // namespace apsl::scenes

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "run/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace apsl::scenes {
+namespace {
+
+double median(const std::vector<FrameReport>& frames, double FrameReport::* seconds) {
+    std::vector<double> values;
+    for (const FrameReport& frame : frames) values.push_back(frame.*seconds);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    if (values.size() % 2 == 1) return *middle;
+    return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+nlohmann::ordered_json to_json(const FrameReport& frame) {
+    return {{"frame", frame.frame},
+            {"max_area_change", frame.max_area_change},
+            {"rms_area_change", frame.rms_area_change},
+            {"max_edge_stretch", frame.max_edge_stretch},
+            {"min_edge_stretch", frame.min_edge_stretch},
+            {"sub_steps", frame.sub_steps},
+            {"cg_iterations", frame.cg_iterations},
+            {"integrator_seconds", frame.integrator_seconds},
+            {"filter_seconds", frame.filter_seconds},
+            {"collision_seconds", frame.collision_seconds},
+            {"step_seconds", frame.step_seconds},
+            {"status", status_name(frame.status)}};
+}
+
+nlohmann::ordered_json to_json(const RunSummary& summary) {
+    return {{"max_area_change", summary.max_area_change},
+            {"mean_max_area_change", summary.mean_max_area_change},
+            {"rms_area_change", summary.rms_area_change},
+            {"max_edge_stretch", summary.max_edge_stretch},
+            {"min_edge_stretch", summary.min_edge_stretch},
+            {"solves", summary.solves},
+            {"cg_iterations_per_solve", summary.cg_iterations_per_solve},
+            {"integrator_seconds_per_frame", summary.integrator_seconds_per_frame},
+            {"filter_seconds_per_frame", summary.filter_seconds_per_frame},
+            {"collision_seconds_per_frame", summary.collision_seconds_per_frame},
+            {"step_seconds_per_frame", summary.step_seconds_per_frame},
+            {"status", status_name(summary.status)}};
+}
+
+}  // namespace
+
+RunSummary summarize(const std::vector<FrameReport>& frames) {
+    RunSummary summary;
+    if (frames.empty()) return summary;
+    std::int64_t cg_iterations = 0;
+    double squares = 0.0;
+    for (const FrameReport& frame : frames) {
+        summary.max_area_change = std::max(summary.max_area_change, frame.max_area_change);
+        summary.mean_max_area_change += frame.max_area_change / static_cast<double>(frames.size());
+        squares += frame.rms_area_change * frame.rms_area_change;
+        summary.max_edge_stretch = std::max(summary.max_edge_stretch, frame.max_edge_stretch);
+        summary.min_edge_stretch = std::min(summary.min_edge_stretch, frame.min_edge_stretch);
+        summary.solves += frame.sub_steps;
+        cg_iterations += frame.cg_iterations;
+        summary.status = std::max(summary.status, frame.status);
+    }
+    summary.rms_area_change = std::sqrt(squares / static_cast<double>(frames.size()));
+    if (summary.solves > 0) {
+        summary.cg_iterations_per_solve = static_cast<double>(cg_iterations) / static_cast<double>(summary.solves);
+    }
+    summary.integrator_seconds_per_frame = median(frames, &FrameReport::integrator_seconds);
+    summary.filter_seconds_per_frame = median(frames, &FrameReport::filter_seconds);
+    summary.collision_seconds_per_frame = median(frames, &FrameReport::collision_seconds);
+    summary.step_seconds_per_frame = median(frames, &FrameReport::step_seconds);
+    return summary;
+}
+
+std::string status_name(Status status) {
+    switch (status) {
+        case Status::ok:
+            return "ok";
+        case Status::not_converged:
+            return "not_converged";
+        case Status::diverged:
+            return "diverged";
+    }
+    return "diverged";
+}
+
+nlohmann::ordered_json to_json(const RunReport& report) {
+    nlohmann::ordered_json json{{"scene", report.scene},
+                                {"backend", report.backend},
+                                {"device", report.device},
+                                {"vertices", report.vertices},
+                                {"triangles", report.triangles},
+                                {"stages", report.stages},
+                                {"device_bytes", report.device_bytes}};
+    json["frames"] = nlohmann::ordered_json::array();
+    for (const FrameReport& frame : report.frames) json["frames"].push_back(to_json(frame));
+    json["summary"] = to_json(summarize(report.frames));
+    if (report.breakdown) {
+        json["breakdown"] = {{"frame", report.breakdown->frame},
+                             {"step", report.breakdown->step},
+                             {"stage", report.breakdown->stage},
+                             {"what", report.breakdown->what}};
+    }
+    json["kernels"] = nlohmann::ordered_json::array();
+    for (const KernelReport& kernel : report.kernels) {
+        json["kernels"].push_back({{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}});
+    }
+    return json;
+}
+
+}  // namespace apsl::scenes

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <apsl/stats.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace apsl::scenes {
+
+/// One frame: the greatest over its steps, sums for counts and seconds, the worst status. Area change is
+/// |A − A⁰| / A⁰ at x + Δt v, after the filter and before collision response; edges are measured at the end of a step.
+struct FrameReport {
+    int frame = 0;
+    double max_area_change = 0.0;
+    double rms_area_change = 0.0;  ///< over triangles and the frame's steps
+    double max_edge_stretch = 1.0;
+    double min_edge_stretch = 1.0;
+    std::int64_t sub_steps = 0;
+    std::int64_t cg_iterations = 0;
+    double integrator_seconds = 0.0;
+    double filter_seconds = 0.0;  ///< with the transfers to and from the device
+    double collision_seconds = 0.0;
+    double step_seconds = 0.0;  ///< all of the steps, without measuring and writing
+    Status status = Status::ok;
+};
+
+/// Where a simulation broke down.
+struct Breakdown {
+    int frame = 0;
+    int step = 0;  ///< within the frame
+    std::string stage;
+    std::string what;
+};
+
+struct KernelReport {
+    std::string name;
+    std::int64_t launches = 0;
+    double seconds = 0.0;  ///< on the device
+};
+
+struct RunReport {
+    std::string scene;
+    std::string backend;  ///< opencl, reference, or none where the scene has no strain limiting
+    std::string device;
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+    std::vector<std::string> stages;  ///< what was there to run, in the order of a step
+    std::size_t device_bytes = 0;
+    std::vector<FrameReport> frames;
+    std::optional<Breakdown> breakdown;
+    std::vector<KernelReport> kernels;  ///< only of a profiled run
+};
+
+/// Over all frames: greatest values, medians of the seconds, the worst status.
+struct RunSummary {
+    double max_area_change = 0.0;
+    double mean_max_area_change = 0.0;
+    double rms_area_change = 0.0;  ///< over triangles and frames
+    double max_edge_stretch = 1.0;
+    double min_edge_stretch = 1.0;
+    std::int64_t solves = 0;
+    double cg_iterations_per_solve = 0.0;
+    double integrator_seconds_per_frame = 0.0;
+    double filter_seconds_per_frame = 0.0;
+    double collision_seconds_per_frame = 0.0;
+    double step_seconds_per_frame = 0.0;
+    Status status = Status::ok;
+};
+
+RunSummary summarize(const std::vector<FrameReport>& frames);
+
+/// "ok", "not_converged" or "diverged".
+std::string status_name(Status status);
+
+/// The report as README and docs describe it. Numbers that are not finite become null.
+nlohmann::ordered_json to_json(const RunReport& report);
+
+}  // namespace apsl::scenes

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "run/commands.hpp"
+#include "run/frame_output.hpp"
+#include "run/input_error.hpp"
+#include "run/interruption.hpp"
+#include "run/parse_scene.hpp"
+#include "run/progress.hpp"
+#include "run/simulation.hpp"
+#include "run/summary.hpp"
+#include "run/whole_file.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace apsl::scenes {
+namespace {
+
+void warn(const std::string& line) {
+    std::fprintf(stderr, "warning: %s\n", line.c_str());
+}
+
+// A report that cannot be written should be known before the simulation, not after it.
+void check_report_place(const std::filesystem::path& file) {
+    if (!file.parent_path().empty() && !std::filesystem::is_directory(file.parent_path())) {
+        throw InputError(file.string() + ": no such folder, expected one that the report can be written to");
+    }
+    WholeFile probe(file);  // not committed: nothing stays
+}
+
+void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report) {
+    WholeFile output(file);
+    output.write(report.dump(1));
+    output.write("\n");
+    output.commit();
+}
+
+void warn_of_settings(const Scene& scene) {
+    if (!scene.strain_limiting) return;
+    const StrainLimiting& settings = *scene.strain_limiting;
+    if (settings.matrix == Matrix::printed && settings.regularization.empty() &&
+        settings.parameters.regularization < 2.0f) {
+        warn(scene.file +
+             ": strain_limiting: sub-steps with the printed matrix diverge for a regularization below 2; use 2 or "
+             "more, or the consistent matrix");
+    }
+}
+
+RunReport describe(const RunOptions& options, Simulation& simulation) {
+    RunReport report;
+    report.scene = options.scene.string();
+    report.backend = "none";
+    report.device = "none";
+    if (const auto* opencl = std::get_if<OpenClFilter>(&simulation.filter())) {
+        report.backend = "opencl";
+        report.device = opencl->device_name();
+        report.device_bytes = opencl->device_bytes();
+    } else if (const auto* reference = std::get_if<ReferenceFilter>(&simulation.filter())) {
+        report.backend = "reference";
+        report.device = reference->device_name();
+    }
+    report.vertices = simulation.cloth().topology->vertex_count();
+    report.triangles = simulation.cloth().topology->triangle_count();
+    report.stages = simulation.stages();
+    return report;
+}
+
+// Whether all frames were run: false after a breakdown or an interruption.
+bool simulate(Simulation& simulation, int frames, std::optional<FrameOutput>& output, RunReport& report) {
+    note_interruptions();
+    Progress progress(frames);
+    while (static_cast<int>(report.frames.size()) < frames && !interrupted()) {
+        report.frames.push_back(simulation.run_frame());
+        if (simulation.breakdown()) {
+            report.breakdown = simulation.breakdown();
+            return false;
+        }
+        if (output) output->add_frame(simulation.cloth(), simulation.area_changes());
+        progress.show(report.frames.back());
+    }
+    return static_cast<int>(report.frames.size()) == frames;
+}
+
+void add_kernel_times(OpenClFilter& filter, RunReport& report) {
+    for (KernelTime& kernel : filter.kernel_times()) {
+        report.kernels.push_back({std::move(kernel.name), kernel.launches, kernel.seconds});
+    }
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options) {
+    Scene scene = read_scene(options.scene, options.overrides);
+    if (options.frames) scene.frames = *options.frames;
+    SceneCloth cloth = make_scene_cloth(scene);
+    const std::vector<std::string> mesh_warnings = cloth.warnings;
+    std::optional<OpenClDevice> device;
+    if (scene.strain_limiting && options.backend == Backend::opencl) device = choose_opencl_device(options.device);
+    if (options.out) make_writable_folder(*options.out);
+    if (options.report) check_report_place(*options.report);
+
+    FilterStage filter = make_filter_stage(scene, cloth.state, options.backend, device, options.profile);
+    Simulation simulation(scene, std::move(cloth), std::move(filter), options.out.has_value());
+    for (const std::string& line : mesh_warnings) warn(line);
+    for (const std::string& line : simulation.warnings()) warn(line);
+    warn_of_settings(scene);
+
+    std::optional<FrameOutput> output;
+    if (options.out) output.emplace(*options.out, simulation.cloth(), scene.time_step * scene.steps_per_frame);
+    RunReport report = describe(options, simulation);
+    const bool complete = simulate(simulation, scene.frames, output, report);
+    if (!complete && !report.breakdown) {
+        std::fprintf(stderr, "interrupted after %zu of %d frames; no report is written\n", report.frames.size(),
+                     scene.frames);
+        return kExitInterrupted;
+    }
+    if (auto* opencl = std::get_if<OpenClFilter>(&simulation.filter()); opencl != nullptr && options.profile) {
+        add_kernel_times(*opencl, report);
+    }
+
+    if (output) output->finish();
+    const nlohmann::ordered_json document = to_json(report);
+    if (options.out) write_report(*options.out / "report.json", document);
+    if (options.report) write_report(*options.report, document);
+    std::fputs(summary_text(report).c_str(), stdout);
+    if (options.out) {
+        std::printf("  frames                 %s: cloth.pvd for ParaView, cloth.obj and cloth.pc2 for Blender\n",
+                    options.out->string().c_str());
+        std::printf("  pictures               python3 scenes/pictures/render.py %s\n", options.out->string().c_str());
+    }
+    if (const std::string advice = convergence_advice(report); !advice.empty()) warn(advice);
+    if (report.breakdown) {
+        std::fprintf(stderr,
+                     "error: %s: broke down in frame %d, step %d, stage %s: %s; try a smaller time_step with more "
+                     "steps_per_frame, softer springs or a larger regularization\n",
+                     report.scene.c_str(), report.breakdown->frame, report.breakdown->step,
+                     report.breakdown->stage.c_str(), report.breakdown->what.c_str());
+        return kExitBrokeDown;
+    }
+    return kExitDone;
+}
+
+}  // namespace apsl::scenes

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "pipeline/colliders.hpp"
+#include "pipeline/pins.hpp"
+#include "run/make_mesh.hpp"
+
+#include <apsl/parameters.hpp>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace apsl::scenes {
+
+struct MeshFile {
+    std::filesystem::path file;    ///< .obj or .ply; relative to the scene file
+    std::optional<double> height;  ///< m, > 0: the y-extent to scale to; as it is without
+};
+
+using MeshSource = std::variant<GridMesh, TubeMesh, MeshFile>;
+
+struct PinnedVertices {
+    std::vector<std::uint32_t> vertices;
+};
+
+/// Corners of the mesh's bounding box, such as "min_x_max_y": the vertex nearest to the corner, seen along the axes
+/// that are not named.
+struct PinnedCorners {
+    std::vector<std::string> corners;
+};
+
+/// Every vertex inside, faces included.
+struct PinnedBox {
+    std::array<double, 3> min{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                              -std::numeric_limits<double>::infinity()};  ///< m
+    std::array<double, 3> max{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::infinity()};  ///< m
+};
+
+/// Which vertices are pinned, before the mesh is known, and how they move.
+struct Pin {
+    std::variant<PinnedVertices, PinnedCorners, PinnedBox> selection;
+    PinMotion motion;
+};
+
+/// Gravity alone moves the cloth ahead of the filter.
+struct NoIntegrator {};
+
+/// Backward Euler on springs (pipeline/implicit_springs.hpp).
+struct ImplicitSpringsIntegrator {
+    double stretch_stiffness = 20.0;  ///< N/m, ≥ 0
+    double bend_stiffness = 0.01;     ///< N/m, ≥ 0
+    double damping = 0.5;             ///< 1/s, ≥ 0
+};
+
+/// Section 6 of the paper: bending springs, and the filter holds the rest (pipeline/springs.hpp).
+struct StandAloneIntegrator {
+    double bend_stiffness = 200.0;  ///< N/m, ≥ 0
+    double damping = 0.5;           ///< 1/s, ≥ 0
+};
+
+using Integrator = std::variant<NoIntegrator, ImplicitSpringsIntegrator, StandAloneIntegrator>;
+
+struct StrainLimiting {
+    Matrix matrix = Matrix::consistent;
+    Apply apply = Apply::matrix_free;
+    Parameters parameters;              ///< time_step is the scene's
+    std::vector<float> regularization;  ///< α ≥ 1, [T]; empty where one number does for all
+};
+
+/// A scene file as read: what it names and nothing more. SI units.
+struct Scene {
+    std::string file;  ///< as named by the user, for messages
+    MeshSource mesh;
+    double density = 0.2;  ///< kg/m², > 0
+    std::vector<Pin> pins;
+    std::array<double, 3> gravity{0.0, -9.81, 0.0};  ///< m/s²
+    double time_step = 1.0 / 60.0;                   ///< s, > 0
+    int steps_per_frame = 1;                         ///< ≥ 1
+    int frames = 180;                                ///< ≥ 1
+    Integrator integrator;
+    std::optional<StrainLimiting> strain_limiting;
+    std::vector<Collider> colliders;
+};
+
+}  // namespace apsl::scenes

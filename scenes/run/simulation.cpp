@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "run/simulation.hpp"
+
+#include "pipeline/advance.hpp"
+#include "pipeline/measures.hpp"
+#include "pipeline/springs.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace apsl::scenes {
+namespace {
+
+class Stopwatch {
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// Where it went wrong first, for the report.
+std::optional<std::size_t> first_not_finite(const std::vector<double>& values) {
+    const auto found = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+    if (found == values.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - values.begin()) / 3;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scene& scene, SceneCloth cloth, FilterStage filter, bool keep_area_changes)
+    : cloth_(std::move(cloth.state)),
+      gravity_(scene.gravity),
+      time_step_(scene.time_step),
+      steps_per_frame_(scene.steps_per_frame),
+      colliders_(scene.colliders),
+      filter_(std::move(filter)),
+      keep_area_changes_(keep_area_changes) {
+    Pins pins(cloth_, std::move(cloth.pins));
+    if (pins.moving()) moving_pins_ = std::move(pins);
+    make_springs(scene);
+    name_stages(scene);
+}
+
+void Simulation::make_springs(const Scene& scene) {
+    const Topology& topology = *cloth_.topology;
+    if (const auto* implicit = std::get_if<ImplicitSpringsIntegrator>(&scene.integrator)) {
+        std::vector<Spring> springs;
+        if (implicit->stretch_stiffness > 0.0) {
+            springs = stretch_springs(topology, cloth_.rest_positions, implicit->stretch_stiffness);
+        }
+        if (implicit->bend_stiffness > 0.0) {
+            const auto bending = bending_springs(topology, cloth_.rest_positions, implicit->bend_stiffness);
+            springs.insert(springs.end(), bending.begin(), bending.end());
+        }
+        springs_.emplace(cloth_, std::move(springs), implicit->damping);
+    } else if (const auto* stand_alone = std::get_if<StandAloneIntegrator>(&scene.integrator)) {
+        StandAloneSprings made = stand_alone_springs(topology, cloth_.rest_positions, stand_alone->bend_stiffness);
+        if (made.connecting > 0) {
+            warnings_.push_back(scene.file + ": integrator.stand_alone: bending springs left the cloth in " +
+                                std::to_string(made.lattices) + " lattices that only areas join; " +
+                                std::to_string(made.connecting) +
+                                " springs along edges were added. Uniform diagonals need none");
+        }
+        springs_.emplace(cloth_, std::move(made.springs), stand_alone->damping);
+    }
+}
+
+void Simulation::name_stages(const Scene& scene) {
+    if (moving_pins_) stages_.emplace_back("pin_motion");
+    if (std::holds_alternative<ImplicitSpringsIntegrator>(scene.integrator)) stages_.emplace_back("implicit_springs");
+    if (std::holds_alternative<StandAloneIntegrator>(scene.integrator)) stages_.emplace_back("stand_alone");
+    if (scene.strain_limiting) stages_.emplace_back("strain_limiting");
+    if (!scene.colliders.empty()) stages_.emplace_back("colliders");
+}
+
+void Simulation::integrate() {
+    if (springs_) {
+        springs_->advance_velocities(cloth_, gravity_, time_step_);
+        return;
+    }
+    for (std::size_t v = 0; v < cloth_.inverse_masses.size(); ++v) {
+        if (cloth_.inverse_masses[v] == 0.0) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis) cloth_.velocities[3 * v + axis] += time_step_ * gravity_[axis];
+    }
+}
+
+void Simulation::break_down(int step, const std::string& stage, const std::string& what, FrameReport& report) {
+    breakdown_ = Breakdown{frame_, step, stage, what};
+    report.status = Status::diverged;
+}
+
+void Simulation::measure_areas(FrameReport& report, const std::optional<Stats>& stats) {
+    AreaChange change;
+    if (!stats || keep_area_changes_) {
+        area_changes_ = predicted_area_changes(cloth_, time_step_);
+        if (!stats) change = summarize(cloth_, area_changes_);
+    }
+    if (stats) change = {stats->max_area_change, stats->rms_area_change};
+    report.max_area_change = std::max(report.max_area_change, change.max);
+    // Sum of squares until the frame is complete.
+    report.rms_area_change += change.rms * change.rms;
+}
+
+void Simulation::run_step(int step, FrameReport& report) {
+    const Stopwatch before_filter;
+    if (moving_pins_) {
+        const double time = (static_cast<double>(frame_) * steps_per_frame_ + step) * time_step_;
+        moving_pins_->set_velocities(cloth_, time, time_step_);
+    }
+    const Stopwatch integrating;
+    integrate();
+    report.integrator_seconds += integrating.seconds();
+    report.step_seconds += before_filter.seconds();
+    if (const auto vertex = first_not_finite(cloth_.velocities)) {
+        return break_down(step, "integrator", "velocity of vertex " + std::to_string(*vertex) + " is not finite",
+                          report);
+    }
+
+    std::optional<Stats> stats;
+    if (!std::holds_alternative<std::monostate>(filter_)) {
+        const Stopwatch filtering;
+        if (auto* opencl = std::get_if<OpenClFilter>(&filter_)) stats = opencl->filter(cloth_);
+        if (auto* reference = std::get_if<ReferenceFilter>(&filter_)) stats = reference->filter(cloth_);
+        const double seconds = filtering.seconds();
+        report.filter_seconds += seconds;
+        report.step_seconds += seconds;
+        report.sub_steps += stats->sub_steps;
+        report.cg_iterations += stats->cg_iterations;
+        report.status = std::max(report.status, stats->status);
+    }
+    measure_areas(report, stats);
+    if (stats && stats->status == Status::diverged) {
+        return break_down(step, "strain_limiting", "the filter met or made a number that is not finite", report);
+    }
+
+    const Stopwatch after_filter;
+    if (!colliders_.empty()) {
+        resolve_collisions(cloth_, colliders_, time_step_);
+        report.collision_seconds += after_filter.seconds();
+    }
+    advance_positions(cloth_, time_step_);
+    report.step_seconds += after_filter.seconds();
+    if (const auto vertex = first_not_finite(cloth_.positions)) {
+        return break_down(step, "advance", "position of vertex " + std::to_string(*vertex) + " is not finite", report);
+    }
+    const EdgeStretch stretch = edge_stretch(cloth_);
+    report.max_edge_stretch = std::max(report.max_edge_stretch, stretch.max);
+    report.min_edge_stretch = std::min(report.min_edge_stretch, stretch.min);
+}
+
+FrameReport Simulation::run_frame() {
+    FrameReport report;
+    report.frame = frame_;
+    int steps = 0;
+    while (steps < steps_per_frame_ && !breakdown_) run_step(steps++, report);
+    report.rms_area_change = std::sqrt(report.rms_area_change / steps);
+    ++frame_;
+    return report;
+}
+
+}  // namespace apsl::scenes

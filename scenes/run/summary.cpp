@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "run/summary.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace apsl::scenes {
+namespace {
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+    const int size = std::snprintf(nullptr, 0, pattern, values...);
+    std::string text(static_cast<std::size_t>(size) + 1, '\0');
+    std::snprintf(text.data(), text.size(), pattern, values...);
+    text.pop_back();
+    return text;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "gravity alone" : text;
+}
+
+}  // namespace
+
+std::string summary_text(const RunReport& report) {
+    const RunSummary summary = summarize(report.frames);
+    const bool filtered = report.backend != "none";
+    std::string text = format("%s: %zu vertices, %zu triangles, %zu frames\n", report.scene.c_str(), report.vertices,
+                              report.triangles, report.frames.size());
+    text += "  stages                 " + joined(report.stages) + "\n";
+    if (filtered) {
+        text += "  strain limiting on     " + report.backend + ": " + report.device;
+        if (report.device_bytes > 0) text += format(", %.1f MB", 1e-6 * static_cast<double>(report.device_bytes));
+        text += "\n";
+    }
+    text += format("  greatest area change   %.2f %%, on average over frames %.2f %%\n",
+                   100.0 * summary.max_area_change, 100.0 * summary.mean_max_area_change);
+    text += format("  RMS area change        %.3f %%\n", 100.0 * summary.rms_area_change);
+    text += format("  edges                  %.2f to %.2f of their rest length\n", summary.min_edge_stretch,
+                   summary.max_edge_stretch);
+    if (filtered) {
+        text += format("  CG iterations          %.1f a solve, %lld solves\n", summary.cg_iterations_per_solve,
+                       static_cast<long long>(summary.solves));
+    }
+    text += format("  time a frame           %.2f ms in all; integration %.2f ms", 1e3 * summary.step_seconds_per_frame,
+                   1e3 * summary.integrator_seconds_per_frame);
+    if (filtered) text += format(", strain limiting %.2f ms", 1e3 * summary.filter_seconds_per_frame);
+    if (summary.collision_seconds_per_frame > 0.0) {
+        text += format(", collisions %.2f ms", 1e3 * summary.collision_seconds_per_frame);
+    }
+    text += " (medians)\n  status                 " + status_name(summary.status) + "\n";
+    for (const KernelReport& kernel : report.kernels) {
+        text += format("  %-30s %8lld launches %10.3f ms\n", kernel.name.c_str(),
+                       static_cast<long long>(kernel.launches), 1e3 * kernel.seconds);
+    }
+    return text;
+}
+
+std::string convergence_advice(const RunReport& report) {
+    const auto count = std::count_if(report.frames.begin(), report.frames.end(),
+                                     [](const FrameReport& frame) { return frame.status == Status::not_converged; });
+    if (count == 0) return {};
+    return "strain limiting did not converge in " + std::to_string(count) + " of " +
+           std::to_string(report.frames.size()) +
+           " frames; raise strain_limiting.max_iterations or strain_limiting.regularization";
+}
+
+}  // namespace apsl::scenes

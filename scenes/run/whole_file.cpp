@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "run/whole_file.hpp"
+
+#include "run/input_error.hpp"
+
+#include <system_error>
+#include <utility>
+
+namespace apsl::scenes {
+
+WholeFile::WholeFile(std::filesystem::path place) : place_(std::move(place)), temporary_(place_.string() + ".partial") {
+    if (std::filesystem::is_directory(place_)) throw InputError(place_.string() + ": is a folder, expected a file");
+    stream_.open(temporary_, std::ios::binary | std::ios::trunc);
+    if (!stream_) throw InputError(place_.string() + ": cannot be written, expected a writable folder");
+}
+
+WholeFile::~WholeFile() {
+    stream_.close();
+    std::error_code ignored;  // after commit there is nothing to remove
+    std::filesystem::remove(temporary_, ignored);
+}
+
+void WholeFile::write(std::string_view bytes) {
+    stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    check();
+}
+
+void WholeFile::overwrite(std::int64_t offset, std::string_view bytes) {
+    stream_.seekp(offset);
+    write(bytes);
+    stream_.seekp(0, std::ios::end);
+}
+
+void WholeFile::commit() {
+    stream_.close();
+    check();
+    std::error_code error;
+    std::filesystem::rename(temporary_, place_, error);
+    if (error) throw InputError(place_.string() + ": cannot be written: " + error.message());
+}
+
+void WholeFile::check() const {
+    if (!stream_) throw InputError(place_.string() + ": writing failed, is the disk full?");
+}
+
+void make_writable_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error || !std::filesystem::is_directory(folder)) {
+        throw InputError(folder.string() + ": cannot be made a folder" + (error ? ": " + error.message() : ""));
+    }
+    WholeFile probe(folder / "probe");  // not committed: nothing stays
+}
+
+}  // namespace apsl::scenes
