@@ -190,7 +190,7 @@ def collider_actor(collider, camera):
     elif "capsule" in collider:
         source = capsule(collider["capsule"]["a"], collider["capsule"]["b"], INSIDE * collider["capsule"]["radius"])
     elif "plane" in collider:
-        source = plane(collider["plane"]["point"], collider["plane"]["normal"], camera)
+        source = plane(collider["plane"].get("point", (0, 0, 0)), collider["plane"].get("normal", (0, 1, 0)), camera)
     else:
         return None
     mapper = vtkPolyDataMapper()

@@ -1,0 +1,231 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The charts on made-up reports and benchmark results: what is drawn where, and what goes wrong in one line."""
+
+import json
+import os
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+from PIL import Image
+
+from made_up_results import COPY, benchmark_results, measurement, report
+
+PROJECT = Path(__file__).resolve().parents[3]
+CHARTS = PROJECT / "bench" / "charts"
+CURVES, SWEEP, SPEED, KERNELS = (CHARTS / f"{name}.py" for name in (
+    "area_change_curves", "speed_accuracy_sweep", "speed_accuracy", "kernel_charts"))
+BLUE, VERMILLION, GREEN = (0, 114, 178), (213, 94, 0), (0, 158, 115)
+
+# Stands in for the program: area change falls with sub-steps and rises with α, the printed matrix breaks down.
+PROGRAM = """#!/usr/bin/python3
+import json, sys
+arguments = sys.argv[1:]
+values = dict(zip(arguments, arguments[1:]))
+sets = dict(text.split("=", 1) for flag, text in zip(arguments, arguments[1:]) if flag == "--set")
+assert arguments[0] == "run" and values["--frames"] == "7" and values["--backend"] == "opencl"
+if sets.get("density") == "-1":
+    print("error: scene.json: density: expected above 0, found -1", file=sys.stderr)
+    sys.exit(2)
+summary = {"max_area_change": 0.8, "mean_max_area_change": 0.6, "filter_seconds_per_frame": 0.0, "status": "ok"}
+if sets.get("strain_limiting") != "null":
+    alpha, count = float(sets["strain_limiting.regularization"]), int(sets["strain_limiting.sub_steps"])
+    change = 0.2 * alpha / count
+    summary.update(max_area_change=change, mean_max_area_change=change / 2, filter_seconds_per_frame=1e-3 * count)
+    if sets["strain_limiting.matrix"] == "printed":
+        summary.update(max_area_change=None, mean_max_area_change=None, status="diverged")
+json.dump({"backend": "opencl", "device": "Made-up device", "vertices": 9, "triangles": 8, "frames": [],
+           "summary": summary}, open(values["--report"], "w"))
+sys.exit(1 if summary["status"] == "diverged" else 0)
+"""
+
+
+def run(script, *arguments, **environment):
+    return subprocess.run([sys.executable, str(script), *map(str, arguments)], capture_output=True, text=True,
+                          timeout=100, env={**os.environ, **environment})
+
+
+def pixels_of(path, colour):
+    """(rows, columns) of the pixels that have exactly this colour."""
+    with Image.open(path) as picture:
+        return np.nonzero((np.asarray(picture.convert("RGB")) == colour).all(axis=2))
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.write_text(content if isinstance(content, str) else json.dumps(content))
+        return path
+
+    def draw(self, script, *arguments):
+        done = run(script, *arguments)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def assert_one_line_error(self, done, *parts):
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+
+class AreaChangeCurves(Folder):
+    def test_curves_lie_in_the_order_of_their_values_on_a_logarithmic_axis(self):
+        names = [self.write(f"{value}.json", report([value] * 50)) for value in (1.0, 0.1, 0.01)]
+        out = self.folder / "curves.png"
+        self.draw(CURVES, *names, "--labels", "off", "on", "stand-alone", "--out", out)
+        with Image.open(out) as picture:
+            self.assertEqual(picture.size[0], 1200)
+        # The median row is the curve's: it is far longer than its line in the legend.
+        off, on, alone = (float(np.median(pixels_of(out, colour)[0])) for colour in (BLUE, VERMILLION, GREEN))
+        self.assertLess(off, on)
+        self.assertAlmostEqual(on - off, alone - on, delta=3)  # a factor of ten each: equal distances
+
+    def test_rest_and_frames_that_are_not_finite_are_passed_over(self):
+        whole = self.write("whole.json", report([0.0] + [0.05] * 99))
+        broken = self.write("broken.json", report([0.0] + [0.05] * 49 + [None] * 50, status="diverged"))
+        for name, path in (("a.png", whole), ("b.png", broken)):
+            self.draw(CURVES, path, "--labels", "run", "--out", self.folder / name)
+        ends = [np.percentile(pixels_of(self.folder / name, BLUE)[1], 60) for name in ("a.png", "b.png")]
+        self.assertLess(ends[1], ends[0])
+
+    def test_errors(self):
+        good, out = self.write("good.json", report([0.1, 0.2])), self.folder / "c.png"
+        self.assert_one_line_error(run(CURVES, self.folder / "no.json", "--out", out), "no.json", "cannot be read")
+        self.assert_one_line_error(run(CURVES, self.write("x.json", "{"), "--out", out), "x.json", "not JSON")
+        self.assert_one_line_error(run(CURVES, self.write("y.json", {"frames": [{}]}), "--out", out), "y.json")
+        self.assert_one_line_error(run(CURVES, self.write("z.json", report([])), "--out", out), "no frame")
+        self.assert_one_line_error(run(CURVES, self.write("n.json", report([None])), "--out", out), "not finite")
+        self.assert_one_line_error(run(CURVES, good, "--labels", "a", "b", "--out", out), "--labels")
+        self.assert_one_line_error(run(CURVES, good, "--out", self.folder / "c.jpg"), ".png")
+        self.assert_one_line_error(run(CURVES, good, "--out", good / "c.png"), "cannot be written")
+        self.assertFalse(out.exists())
+
+    def test_missing_matplotlib_is_named(self):
+        self.write("matplotlib.py", "raise ImportError('No module named matplotlib')")
+        self.assert_one_line_error(run(CURVES, "a", "--out", "b.png", PYTHONPATH=str(self.folder)),
+                                   "apt-get install python3-matplotlib")
+
+
+class SpeedAccuracy(Folder):
+    def setUp(self):
+        super().setUp()
+        self.program = self.write("apsl", PROGRAM)
+        self.program.chmod(self.program.stat().st_mode | stat.S_IXUSR)
+
+    def sweep(self, *arguments):
+        return run(SWEEP, self.program, "--frames", "7", "--sub-steps", "1,2,4", "--consistent", "1.2,2",
+                   "--out", self.folder / "summary.json", *arguments)
+
+    def test_sweep_gathers_every_setting_and_the_run_without_the_filter(self):
+        done = self.sweep("--printed", "3")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((self.folder / "summary.json").read_text())
+        self.assertEqual(summary["device"], "Made-up device")
+        self.assertEqual(summary["without_filter"]["max_area_change"], 0.8)
+        self.assertEqual([(run["matrix"], run["regularization"], run["sub_steps"]) for run in summary["runs"]],
+                         [("consistent", 1.2, 1), ("consistent", 1.2, 2), ("consistent", 1.2, 4),
+                          ("consistent", 2.0, 1), ("consistent", 2.0, 2), ("consistent", 2.0, 4),
+                          ("printed", 3.0, 1), ("printed", 3.0, 2), ("printed", 3.0, 4)])
+        self.assertAlmostEqual(summary["runs"][1]["max_area_change"], 0.12)
+        self.assertEqual({run["status"] for run in summary["runs"][6:]}, {"diverged"})
+
+    def test_chart_of_the_sweep(self):
+        self.assertEqual(self.sweep("--printed", "3").returncode, 0)
+        out = self.folder / "chart.png"
+        self.draw(SPEED, self.folder / "summary.json", "--out", out)
+        # α = 2 is blue and stretches more than α = 1.2, which is vermillion: it lies higher, over the same times.
+        upper, lower = (pixels_of(out, colour) for colour in (BLUE, VERMILLION))
+        self.assertLess(upper[0].min(), lower[0].min())
+        self.assertAlmostEqual(upper[1].max(), lower[1].max(), delta=2)
+        # Runs that broke down have a line in the legend and no point: no marker as wide as ten pixels.
+        broken = pixels_of(out, GREEN)
+        self.assertLess(np.ptp(broken[0]), 10)
+
+    def test_errors_of_the_program_are_passed_on(self):
+        self.assert_one_line_error(self.sweep("--set", "density=-1"), "exit code 2", "density: expected above 0")
+        self.assertFalse((self.folder / "summary.json").exists())
+        self.assert_one_line_error(run(SWEEP, self.folder / "absent", "--out", "x.json"), "cannot be run")
+        self.assert_one_line_error(self.sweep("--sub-steps", "0"), "--sub-steps")
+        self.assert_one_line_error(self.sweep("--consistent", "0.5"), "--consistent")
+
+    def test_chart_errors(self):
+        out = self.folder / "chart.png"
+        self.assert_one_line_error(run(SPEED, self.write("s.json", {}), "--out", out), "s.json", "not a summary")
+        self.assert_one_line_error(run(SPEED, self.write("e.json", {"runs": []}), "--out", out), "e.json", "no run")
+
+
+class KernelCharts(Folder):
+    def test_made_up_results_fit_the_schema(self):
+        schema = json.loads((PROJECT / "docs" / "benchmark.schema.json").read_text())
+        jsonschema.Draft202012Validator.check_schema(schema)
+        jsonschema.validate(benchmark_results(), schema)
+        nameless = measurement("kernel", None, "ours", 8, 1.0)
+        with self.assertRaises(jsonschema.ValidationError):
+            jsonschema.validate([nameless], schema)
+
+    def test_all_three_charts_are_drawn(self):
+        self.draw(KERNELS, self.write("results.json", benchmark_results()), "--out", self.folder / "charts")
+        names = sorted(path.name for path in (self.folder / "charts").iterdir())
+        self.assertEqual(names, ["copy_bandwidth.png", "cost_breakdown.png", "time_against_size.png"])
+        for name in names:
+            with Image.open(self.folder / "charts" / name) as picture:
+                self.assertEqual(picture.size[0], 1200)
+                self.assertGreater(len(picture.convert("RGB").getcolors(1 << 20)), 20)
+
+    def test_bars_are_as_long_as_the_share_of_copy_bandwidth(self):
+        results = [measurement("kernel", name, "ours", 1000, 1e-9 * 5e6 / (COPY * share), 5e6)
+                   for name, share in (("full", 1.0), ("half", 0.5))]
+        done = run(KERNELS, self.write("results.json", results), "--out", self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("time_against_size.png left out", done.stderr)
+        rows, columns = pixels_of(self.folder / "copy_bandwidth.png", BLUE)
+        lengths = sorted({np.ptp(columns[rows == row]) for row in rows})
+        self.assertAlmostEqual(lengths[0] / lengths[-1], 0.5, delta=0.02)
+
+    def test_parts_of_the_cost_breakdown_are_as_long_as_their_times(self):
+        times = (("CG", 3e-3), ("rest", 1e-3))
+        results = [measurement("phase", name, "ours", 1000, seconds) for name, seconds in times]
+        done = run(KERNELS, self.write("results.json", results), "--out", self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        wide, narrow = (len(pixels_of(self.folder / "cost_breakdown.png", colour)[0]) for colour in (BLUE, VERMILLION))
+        self.assertAlmostEqual(wide / narrow, 3.0, delta=0.25)
+
+    def test_one_method_on_two_devices_must_be_asked_for(self):
+        results = [measurement("cg_iteration", None, "ours", 1000, 1e-3, device=device) for device in ("A", "B")]
+        path = self.write("results.json", results)
+        self.assert_one_line_error(run(KERNELS, path, "--out", self.folder), "2 devices (A, B)", "--device")
+        for device in ("A", "all"):
+            self.assertEqual(run(KERNELS, path, "--device", device, "--out", self.folder).returncode, 0)
+
+    def test_errors(self):
+        def broken(**changes):
+            results = benchmark_results()
+            results[1].update(changes)
+            return run(KERNELS, self.write("results.json", results), "--out", self.folder / "charts")
+        self.assert_one_line_error(broken(median_seconds=0), "measurement 1", "median_seconds")
+        self.assert_one_line_error(broken(median_seconds="fast"), "measurement 1", "median_seconds", "'fast'")
+        self.assert_one_line_error(broken(quantity="speed"), "measurement 1", "quantity")
+        self.assert_one_line_error(broken(quantity="kernel", name=None), "measurement 1", "name")
+        self.assert_one_line_error(broken(device=None), "measurement 1", "device")
+        self.assert_one_line_error(broken(error=-1), "measurement 1", "error")
+        self.assert_one_line_error(run(KERNELS, self.write("o.json", {}), "--out", self.folder), "expected a list")
+        self.assert_one_line_error(run(KERNELS, self.write("e.json", []), "--out", self.folder), "no measurement")
+        good = self.write("good.json", benchmark_results())
+        self.assert_one_line_error(run(KERNELS, good, "--methods", "none", "--out", self.folder), "no measurement")
+        self.assert_one_line_error(run(KERNELS, good, "--triangles", "5", "--out", self.folder), "--triangles 5")
+        self.assertFalse((self.folder / "charts").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
