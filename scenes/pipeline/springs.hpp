@@ -18,14 +18,18 @@ struct Spring {
     double stiffness = 0.0;    ///< N/m, k ≥ 0
 };
 
+/// At rest at `rest_positions` (m, [3V]), the smaller index first.
+Spring make_spring(std::uint32_t a, std::uint32_t b, std::span<const double> rest_positions, double stiffness);
+
 /// One spring per edge. On a triangle grid the diagonal edges are the shear springs of Baraff and Witkin's split into
 /// stretch, shear and bending; they are as stiff as the others.
 /// Here and below: `rest_positions` m, [3V]; `stiffness` N/m. Throws Error(invalid_argument) for a size that does not
 /// fit and for a stiffness that is negative or not finite.
 std::vector<Spring> stretch_springs(const Topology& topology, std::span<const double> rest_positions, double stiffness);
 
-/// One linear spring per interior edge, between the two vertices opposite it; every pair where more than two triangles
-/// meet at an edge. Each pair of vertices at most once, however many edges give it.
+/// One linear spring per interior edge, between the two vertices opposite it; every pair of opposite vertices where
+/// more than two triangles meet at an edge. Where two edges give the same pair (around a vertex of four triangles) that
+/// pair has two springs.
 std::vector<Spring> bending_springs(const Topology& topology, std::span<const double> rest_positions, double stiffness);
 
 /// The springs of the stand-alone solver (Section 6 of the paper), and what had to be added to the plain bending
@@ -33,9 +37,10 @@ std::vector<Spring> bending_springs(const Topology& topology, std::span<const do
 struct StandAloneSprings {
     std::vector<Spring> springs;
     std::size_t bending = 0;      ///< across interior edges
-    std::size_t second_ring = 0;  ///< between vertices two edges apart, for vertices that area alone would hold
-    std::size_t connecting = 0;   ///< along edges, because the others left the cloth in lattices that only area joins
-    std::size_t lattices = 0;     ///< connected parts of bending + second-ring springs, over all mesh components
+    std::size_t lattices = 0;     ///< connected parts that these leave the mesh in, all its components together
+    std::size_t second_ring = 0;  ///< between vertices two edges apart, one of them not held from all sides
+    std::size_t connecting = 0;   ///< between vertices two edges apart, in different lattices
+    std::size_t along_edges = 0;  ///< in patches too small for either
 };
 
 /// What holds a cloth together where area is all else that does (no stretch springs).

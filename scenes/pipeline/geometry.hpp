@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <apsl/topology.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <span>
+
+namespace apsl::scenes {
+
+// Three doubles in a row, seen as a vector.
+inline Eigen::Map<const Eigen::Vector3d> vector_at(std::span<const double> values, std::size_t vertex) {
+    return Eigen::Map<const Eigen::Vector3d>(values.data() + 3 * vertex);
+}
+
+inline Eigen::Map<Eigen::Vector3d> vector_at(std::span<double> values, std::size_t vertex) {
+    return Eigen::Map<Eigen::Vector3d>(values.data() + 3 * vertex);
+}
+
+/// m² from positions in m, [3V].
+inline double triangle_area(std::span<const double> positions, const Triangle& triangle) {
+    const Eigen::Vector3d a = vector_at(positions, triangle[0]);
+    const Eigen::Vector3d b = vector_at(positions, triangle[1]);
+    const Eigen::Vector3d c = vector_at(positions, triangle[2]);
+    return 0.5 * (b - a).cross(c - a).norm();
+}
+
+}  // namespace apsl::scenes

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/measures.hpp"
+
+#include "pipeline/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace apsl::scenes {
+
+EdgeStretch edge_stretch(const ClothState& cloth) {
+    const std::span<const double> positions = cloth.positions;
+    const std::span<const double> rest_positions = cloth.rest_positions;
+    EdgeStretch stretch{.min = std::numeric_limits<double>::infinity(), .max = 0.0};
+    for (const auto& [a, b] : cloth.topology->edges()) {
+        const double rest_length = (vector_at(rest_positions, b) - vector_at(rest_positions, a)).norm();
+        if (rest_length > 0.0) {
+            const double ratio = (vector_at(positions, b) - vector_at(positions, a)).norm() / rest_length;
+            stretch.min = std::min(stretch.min, ratio);
+            stretch.max = std::max(stretch.max, ratio);
+        }
+    }
+    return stretch.max < stretch.min ? EdgeStretch{} : stretch;
+}
+
+std::vector<double> area_changes(const ClothState& cloth) {
+    return predicted_area_changes(cloth, 0.0);
+}
+
+std::vector<double> predicted_area_changes(const ClothState& cloth, double time_step) {
+    const std::span<const double> positions = cloth.positions;
+    const std::span<const double> velocities = cloth.velocities;
+    std::vector<double> changes;
+    changes.reserve(cloth.rest_areas.size());
+    for (const Triangle& triangle : cloth.topology->triangles()) {
+        const double rest_area = cloth.rest_areas[changes.size()];
+        Eigen::Vector3d corner[3];
+        for (int k = 0; k < 3; ++k) {
+            corner[k] = vector_at(positions, triangle[k]) + time_step * vector_at(velocities, triangle[k]);
+        }
+        const double area = 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
+        changes.push_back(rest_area > 0.0 ? std::abs(area - rest_area) / rest_area : 0.0);
+    }
+    return changes;
+}
+
+AreaChange summarize(const ClothState& cloth, const std::vector<double>& changes) {
+    AreaChange summary;
+    double sum_of_squares = 0.0;
+    std::size_t counted = 0;
+    for (std::size_t triangle = 0; triangle < changes.size(); ++triangle) {
+        if (cloth.rest_areas[triangle] > 0.0) {
+            // Not std::max: a NaN must show, not vanish in a comparison.
+            if (!(changes[triangle] <= summary.max)) {
+                summary.max = changes[triangle];
+            }
+            sum_of_squares += changes[triangle] * changes[triangle];
+            ++counted;
+        }
+    }
+    summary.rms = counted > 0 ? std::sqrt(sum_of_squares / static_cast<double>(counted)) : 0.0;
+    return summary;
+}
+
+}  // namespace apsl::scenes
