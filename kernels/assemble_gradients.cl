@@ -90,7 +90,9 @@ APSL_KERNEL void assemble_gradients(__global const apsl_cloth* cloths, __global 
     const apsl_range range = share_of(cloth.triangle_count, !states[c].stopped);
     apsl_area_sums sums = {0.0f, 0.0f, 0.0f, 0.0f};
     float residual_squared = 0.0f;
-#if !APSL_REGULARIZATION_PER_TRIANGLE
+#if APSL_REGULARIZATION_PER_TRIANGLE
+    (void)parameters;
+#else
     (void)regularization;
     (void)regularization_offset;
 #endif
