@@ -127,9 +127,9 @@ class ClothView:
         view.SetViewAngle(camera.view_angle)
 
     def _place_lights(self):
-        # In the camera's frame: a key from the upper left well off the axis draws the folds, a weak fill
-        # from the right keeps what is turned away readable.
-        for position, strength in (((-1.6, 1.5, 1.2), 0.75), ((1.8, 0.2, 1.4), 0.30)):
+        # In the camera's frame: a key from the upper left, well off the axis, draws the folds; a fill from the lower
+        # right keeps what hangs over, its underside to the camera, from going black.
+        for position, strength in (((-1.5, 1.0, 1.5), 0.68), ((1.3, -1.0, 1.2), 0.38)):
             light = vtkLight()
             light.SetLightTypeToCameraLight()
             light.SetPosition(*position)
@@ -148,9 +148,9 @@ class ClothView:
         mapper.UseLookupTableScalarRangeOff()
         mapper.SetScalarModeToUseCellFieldData()
         mapper.SelectColorArray("area_change")
-        self._coloured = material((1.0, 1.0, 1.0), ambient=0.32, diffuse=0.95)
-        self._front = material(CLOTH_FRONT, ambient=0.20, diffuse=1.0)
-        self._back = material(CLOTH_BACK, ambient=0.20, diffuse=1.0)
+        self._coloured = material((1.0, 1.0, 1.0), ambient=0.30, diffuse=0.95)
+        self._front = material(CLOTH_FRONT, ambient=0.22, diffuse=1.0)
+        self._back = material(CLOTH_BACK, ambient=0.22, diffuse=1.0)
         self._cloth = vtkActor()
         self._cloth.SetMapper(mapper)
         self._renderer.AddActor(self._cloth)
@@ -185,12 +185,14 @@ def material(colour, ambient, diffuse):
 def collider_actor(collider, camera):
     """The collider of a scene file as something to draw, a little inside its surface: cloth rests on the surface
     with its vertices alone, and the middle of a triangle would be hidden. None for a kind not known here."""
-    if "sphere" in collider:
-        source = sphere(collider["sphere"]["center"], INSIDE * collider["sphere"]["radius"])
-    elif "capsule" in collider:
-        source = capsule(collider["capsule"]["a"], collider["capsule"]["b"], INSIDE * collider["capsule"]["radius"])
-    elif "plane" in collider:
-        source = plane(collider["plane"].get("point", (0, 0, 0)), collider["plane"].get("normal", (0, 1, 0)), camera)
+    # Defaults are those of the scene file.
+    (kind, shape), = collider.items()
+    if kind == "sphere":
+        source = sphere(shape.get("center", (0, 0, 0)), INSIDE * shape.get("radius", 0.3))
+    elif kind == "capsule":
+        source = capsule(shape.get("a", (-0.3, 0, 0)), shape.get("b", (0.3, 0, 0)), INSIDE * shape.get("radius", 0.1))
+    elif kind == "plane":
+        source = plane(shape.get("point", (0, 0, 0)), shape.get("normal", (0, 1, 0)), camera)
     else:
         return None
     mapper = vtkPolyDataMapper()
@@ -232,7 +234,7 @@ def plane(point, normal, camera):
     middle -= (1.0 - INSIDE) * camera.scene_radius * normal
     source = vtkRegularPolygonSource()
     source.SetNumberOfSides(256)
-    source.SetRadius(1.1 * camera.scene_radius)
+    source.SetRadius(0.75 * camera.scene_radius)
     source.SetCenter(*middle)
     source.SetNormal(*normal)
     return source
