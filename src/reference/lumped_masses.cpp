@@ -21,6 +21,8 @@ std::vector<Real> areas(const Topology& topology, std::span<const Real> position
 template <class Real>
 std::vector<Real> inverse_masses(const Topology& topology, std::span<const Real> rest_areas, Real density) {
     check_size("rest_areas", rest_areas.size(), topology.triangle_count());
+    check_values("rest_areas", "triangle", rest_areas, "a finite number >= 0 (m2)",
+                 [](Real area) { return area >= Real(0); });
     if (!(std::isfinite(density) && density > Real(0)))
         throw Error(ErrorCode::invalid_argument,
                     "density is " + std::to_string(density) + ", expected a finite number > 0 (kg/m2)");

@@ -130,8 +130,11 @@ struct BasicStrainLimiter<Real>::Implementation {
             stats.residual = std::max(stats.residual, static_cast<float>(result.relative_residual));
             all_converged = all_converged && result.converged;
         }
-        if (!filtered_velocities(buffers, time_step)) return;
-        std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
+        // Without a sub-step there is nothing to add, not even a zero: −0 + 0 would lose its sign.
+        if (stats.sub_steps > 0) {
+            if (!filtered_velocities(buffers, time_step)) return;
+            std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
+        }
         stats.status = all_converged ? Status::ok : Status::not_converged;
     }
 };

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include <apsl/error.hpp>
+#include <apsl/parameters.hpp>
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+using namespace apsl;
+
+namespace {
+
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+template <class Value>
+std::string message_of(Value Parameters::* field, Value value) {
+    Parameters parameters;
+    parameters.*field = value;
+    try {
+        validate(parameters);
+    } catch (const Error& error) {
+        CHECK(error.code() == ErrorCode::invalid_argument);
+        return error.what();
+    }
+    return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("the default parameters are legal") {
+    CHECK_NOTHROW(validate(Parameters{}));
+}
+
+TEST_CASE("each parameter out of its range is named, with its value and its range") {
+    CHECK(message_of(&Parameters::time_step, 0.0f) == "time_step is 0, expected a finite number > 0 (seconds)");
+    CHECK(message_of(&Parameters::regularization, 0.5f) ==
+          "regularization is 0.5, expected a finite number >= 1 (alpha multiplies the diagonal of G)");
+    CHECK(message_of(&Parameters::sub_steps, -1) == "sub_steps is -1, expected a whole number >= 0");
+    CHECK(message_of(&Parameters::target_area_change, -0.25f) ==
+          "target_area_change is -0.25, expected a finite number >= 0 (a fraction of the rest area)");
+    CHECK(message_of(&Parameters::tolerance, 1.0f) == "tolerance is 1, expected a number in [0, 1)");
+    CHECK(message_of(&Parameters::max_iterations, 0) == "max_iterations is 0, expected a whole number >= 1");
+}
+
+TEST_CASE("numbers that are not finite are refused in every field") {
+    for (const float bad : {not_a_number, infinity, -infinity})
+        for (const auto field : {&Parameters::time_step, &Parameters::regularization, &Parameters::target_area_change,
+                                 &Parameters::tolerance})
+            CHECK(message_of(field, bad) != "no error");
+}
+
+TEST_CASE("the ends of the ranges are legal") {
+    CHECK(message_of(&Parameters::regularization, 1.0f) == "no error");
+    CHECK(message_of(&Parameters::regularization, 1e6f) == "no error");
+    CHECK(message_of(&Parameters::sub_steps, 0) == "no error");
+    CHECK(message_of(&Parameters::tolerance, 0.0f) == "no error");
+    CHECK(message_of(&Parameters::max_iterations, 1) == "no error");
+    CHECK(message_of(&Parameters::time_step, std::numeric_limits<float>::min()) == "no error");
+}
