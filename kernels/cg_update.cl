@@ -5,14 +5,15 @@
 #include "layout.h"
 #include "work_group.h"
 
-// Chronopoulos and Gear: β = γ_k / γ_{k−1}, α = γ_k / (δ_k − β γ_k / α_{k−1}). Step 0 where the matrix shows no
-// positive curvature along the direction (rounding on a singular system): the solve then stays where it is.
+// Chronopoulos and Gear: β = γ_k / γ_{k−1}, α = γ_k / (δ_k − β γ_k / α_{k−1}). Step 0 where the matrix shows no curvature
+// above rounding along the direction (α = 1 can bring that about): the solve then stays where it is, for good, since a
+// former step of 0 makes the denominator −∞.
 static inline float2 cg_coefficients(float residual, float curvature, float previous_residual, float previous_step,
                                      int iteration) {
     const float beta = iteration == 0 ? 0.0f : residual / previous_residual;
     const float denominator = iteration == 0 ? curvature : curvature - beta * residual / previous_step;
     const float step = residual / denominator;
-    const bool usable = denominator > 0.0f && isfinite(step) && isfinite(beta);
+    const bool usable = denominator > FLT_EPSILON * residual && isfinite(step) && isfinite(beta);
     return usable ? (float2)(step, beta) : (float2)(0.0f, 0.0f);
 }
 
@@ -58,8 +59,8 @@ APSL_KERNEL void cg_update(__global const apsl_cloth* cloths, __global apsl_solv
         const uint even = APSL_PARTIAL_RESIDUAL_EVEN;
         const float own = partials_of(partials, even + slot, groups)[get_group_id(0)];
         partials_of(partials, even + (slot ^ 1u), groups)[get_group_id(0)] = iterating ? sum : own;
+        if (get_group_id(0) == 0 && states[c].iterating) states[c].step[slot] = step;
         if (get_group_id(0) == 0 && iterating) {
-            states[c].step[slot] = step;
             states[c].has_pressure = 1;
             stats[c].cg_iterations += 1;
         }
