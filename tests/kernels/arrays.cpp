@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/arrays.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace apsl::test {
+namespace {
+
+host::Adjacency adjacency_of(std::span<const Cloth> cloths, Matrix matrix) {
+    std::vector<std::shared_ptr<const Topology>> topologies;
+    for (const Cloth& cloth : cloths) topologies.push_back(cloth.topology);
+    return host::build_adjacency(topologies, matrix, true);
+}
+
+std::vector<ScaledSolve> solves_of(std::span<const Cloth> cloths, Matrix matrix, double alpha, bool per_triangle) {
+    std::vector<ScaledSolve> solves;
+    for (const Cloth& cloth : cloths)
+        solves.push_back(scaled_solve(
+            cloth, matrix, per_triangle ? cloth.regularization : std::vector<double>(cloth.rest_areas.size(), alpha)));
+    return solves;
+}
+
+apsl_parameters device_parameters(const Parameters& p) {
+    return {p.time_step,
+            1.0f / p.time_step,
+            p.regularization,
+            p.target_area_change,
+            p.tolerance * p.tolerance,
+            p.sub_steps,
+            p.max_iterations,
+            0};
+}
+
+std::vector<apsl_solve_state> fresh_states(std::span<const ScaledSolve> solves) {
+    std::vector<apsl_solve_state> states;
+    for (const ScaledSolve& solve : solves) {
+        const std::vector<double>& b = solve.right_hand_side;
+        apsl_solve_state state = poison<apsl_solve_state>(1)[0];
+        state.stopped = 0;
+        state.iterating = 1;
+        state.initial_residual = static_cast<float>(std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
+        state.has_pressure = 0;
+        states.push_back(state);
+    }
+    return states;
+}
+
+std::vector<cl_float4> predicted_of(std::span<const Cloth> cloths) {
+    std::vector<cl_float4> all;
+    for (const Cloth& cloth : cloths)
+        for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v)
+            all.push_back(
+                {{static_cast<float>(cloth.positions[3 * v]), static_cast<float>(cloth.positions[3 * v + 1]),
+                  static_cast<float>(cloth.positions[3 * v + 2]), static_cast<float>(cloth.inverse_masses[v])}});
+    return all;
+}
+
+// Scaled g_0 and (α − 1)/α, scaled g_1 and s; α from s² α D = 1.
+std::vector<cl_float8> gradients_of(std::span<const Cloth> cloths, std::span<const ScaledSolve> solves,
+                                    const host::Adjacency& adjacency, double alpha, bool per_triangle) {
+    std::vector<cl_float8> all(adjacency.triangle_count);
+    for (std::size_t c = 0; c < cloths.size(); ++c)
+        for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a) {
+            const double own_alpha = per_triangle ? cloths[c].regularization[a] : alpha;
+            const double s = solves[c].scale[a];
+            const auto g0 = s * solves[c].geometry[a].gradients[0];
+            const auto g1 = s * solves[c].geometry[a].gradients[1];
+            cl_float8& out = all[adjacency.cloths[c].triangle_begin + a];
+            for (int k = 0; k < 3; ++k) {
+                out.s[k] = static_cast<float>(g0[k]);
+                out.s[4 + k] = static_cast<float>(g1[k]);
+            }
+            out.s[3] = static_cast<float>((own_alpha - 1.0) / own_alpha);
+            out.s[7] = static_cast<float>(s);
+        }
+    return all;
+}
+
+std::vector<float> values_of(std::span<const ScaledSolve> solves) {
+    std::vector<float> all;
+    for (const ScaledSolve& solve : solves)
+        std::transform(solve.rows.valuePtr(), solve.rows.valuePtr() + solve.rows.nonZeros(), std::back_inserter(all),
+                       [](double value) { return static_cast<float>(value); });
+    return all;
+}
+
+std::vector<float> placed(std::span<const Cloth> cloths, std::vector<double> Cloth::* numbers, std::size_t width,
+                          Placement placement) {
+    std::vector<float> all = poison<float>(placement.offset);
+    for (const Cloth& cloth : cloths)
+        for (std::size_t n = 0; n < (cloth.*numbers).size(); n += width) {
+            for (std::size_t k = 0; k < width; ++k) all.push_back(static_cast<float>((cloth.*numbers)[n + k]));
+            const std::vector<float> gap = poison<float>(placement.stride - width);
+            all.insert(all.end(), gap.begin(), gap.end());
+        }
+    all.resize(all.size() - (placement.stride - width));
+    return all;
+}
+
+}  // namespace
+
+Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parameters& p, std::uint32_t group_count,
+               bool alpha_per_triangle, Placement position, Placement velocity)
+    : sources(source_cloths),
+      solves(solves_of(source_cloths, matrix, p.regularization, alpha_per_triangle)),
+      adjacency(adjacency_of(source_cloths, matrix)),
+      groups(group_count),
+      position_placement(position),
+      velocity_placement(velocity),
+      array_offset(position.offset),
+      cloths(adjacency.cloths),
+      parameters(std::vector<apsl_parameters>(source_cloths.size(), device_parameters(p))),
+      states(fresh_states(solves)),
+      stats(std::vector<apsl_stats>(source_cloths.size(), apsl_stats{})),
+      partials(poison<float>(source_cloths.size() * APSL_PARTIAL_KINDS * group_count)),
+      triangles(adjacency.triangles),
+      corner_offsets(adjacency.corner_offsets),
+      corners(adjacency.corners),
+      row_offsets(adjacency.row_offsets),
+      columns(adjacency.columns),
+      shared(adjacency.shared),
+      predicted(predicted_of(source_cloths)),
+      gradients(gradients_of(source_cloths, solves, adjacency, p.regularization, alpha_per_triangle)),
+      residual(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].right_hand_side[a]; })),
+      values(values_of(solves)),
+      vertex_forces(poison<cl_float4>(adjacency.vertex_count)),
+      product(poison<float>(adjacency.triangle_count)),
+      direction(poison<float>(adjacency.triangle_count)),
+      direction_product(poison<float>(adjacency.triangle_count)),
+      pressure(poison<float>(adjacency.triangle_count)),
+      caller_positions(placed(sources, &Cloth::positions, 3, position)),
+      caller_velocities(placed(sources, &Cloth::velocities, 3, velocity)),
+      inverse_masses(placed(sources, &Cloth::inverse_masses, 1, {1, array_offset})),
+      rest_areas(placed(sources, &Cloth::rest_areas, 1, {1, array_offset})),
+      regularization(placed(sources, &Cloth::regularization, 1, {1, array_offset})) {
+    for (std::size_t c = 0; c < cloth_count(); ++c)
+        write_partial_sum(c, APSL_PARTIAL_RESIDUAL_EVEN, static_cast<double>(states.read()[c].initial_residual));
+}
+
+std::vector<double> Arrays::of_cloth(const std::vector<float>& per_triangle, std::size_t cloth) const {
+    const auto begin = per_triangle.begin() + adjacency.cloths[cloth].triangle_begin;
+    return {begin, begin + adjacency.cloths[cloth].triangle_count};
+}
+
+std::vector<float> Arrays::over_triangles(const std::function<double(std::size_t, std::size_t)>& value) const {
+    std::vector<float> all(adjacency.triangle_count, 0.0f);
+    for (std::size_t c = 0; c < cloth_count(); ++c)
+        for (std::size_t a = 0; a < adjacency.cloths[c].triangle_count; ++a)
+            all[adjacency.cloths[c].triangle_begin + a] = static_cast<float>(value(c, a));
+    return all;
+}
+
+std::vector<double> Arrays::partials_of(std::size_t cloth, int kind) const {
+    const std::vector<float> all = partials.read();
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>((cloth * APSL_PARTIAL_KINDS + kind) * groups);
+    return {begin, begin + groups};
+}
+
+void Arrays::write_partials(std::size_t cloth, int kind, const std::vector<double>& numbers) {
+    std::vector<float> all = partials.read();
+    for (std::size_t g = 0; g < groups; ++g)
+        all[(cloth * APSL_PARTIAL_KINDS + kind) * groups + g] = static_cast<float>(numbers[g]);
+    partials.write(all);
+}
+
+void Arrays::write_partial_sum(std::size_t cloth, int kind, double sum) {
+    std::vector<double> numbers(groups, 0.0);
+    numbers[0] = sum;
+    write_partials(cloth, kind, numbers);
+}
+
+void Arrays::edit_states(const std::function<void(apsl_solve_state&)>& edit) {
+    std::vector<apsl_solve_state> edited = states.read();
+    for (apsl_solve_state& state : edited) edit(state);
+    states.write(edited);
+}
+
+}  // namespace apsl::test

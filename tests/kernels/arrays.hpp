@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "host/limiter_plan.hpp"
+#include "kernels/cloths.hpp"
+#include "support/opencl.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace apsl::test {
+
+/// Floats in a caller's buffer: from one element to the next, and before the first.
+struct Placement {
+    std::uint32_t stride = 3;
+    std::uint64_t offset = 0;
+};
+
+/// Every array of a limiter in guarded device memory, for one or more cloths: inputs as the reference has them, outputs
+/// poisoned. A test overwrites what it wants otherwise.
+struct Arrays {
+    /// alpha as in `parameters` unless per triangle; the solve state is that of a solve about to begin.
+    Arrays(std::span<const Cloth> cloths, Matrix matrix, const Parameters& parameters, std::uint32_t groups,
+           bool alpha_per_triangle = false, Placement positions = {}, Placement velocities = {});
+
+    std::span<const Cloth> sources;
+    std::vector<ScaledSolve> solves;  ///< one a cloth
+    host::Adjacency adjacency;
+    std::uint32_t groups;
+    Placement position_placement, velocity_placement;
+    std::uint64_t array_offset;  ///< of inverse masses, rest areas and regularization, floats
+
+    DeviceArray<apsl_cloth> cloths;
+    DeviceArray<apsl_parameters> parameters;
+    DeviceArray<apsl_solve_state> states;
+    DeviceArray<apsl_stats> stats;
+    DeviceArray<float> partials;
+    DeviceArray<std::uint32_t> triangles, corner_offsets, corners, row_offsets, columns;
+    DeviceArray<std::uint8_t> shared;
+    DeviceArray<cl_float4> predicted;      ///< positions and inverse masses
+    DeviceArray<cl_float8> gradients;      ///< scaled
+    DeviceArray<float> residual;           ///< the scaled right-hand side
+    DeviceArray<float> values;             ///< the scaled matrix
+    DeviceArray<cl_float4> vertex_forces;  ///< poisoned, as the rest of the internal arrays
+    DeviceArray<float> product, direction, direction_product, pressure;
+    DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
+
+    std::size_t cloth_count() const { return sources.size(); }
+    /// The cloth's numbers out of an array over (padded) triangles.
+    std::vector<double> of_cloth(const std::vector<float>& per_triangle, std::size_t cloth) const;
+    /// One number a triangle for every cloth, as the kernels lay them out; 0 in the padding.
+    std::vector<float> over_triangles(const std::function<double(std::size_t cloth, std::size_t a)>& value) const;
+    /// A kind's partial results of a cloth, one for each group.
+    std::vector<double> partials_of(std::size_t cloth, int kind) const;
+    void write_partials(std::size_t cloth, int kind, const std::vector<double>& values);
+    /// Puts the sum into the first group's place, 0 into the others.
+    void write_partial_sum(std::size_t cloth, int kind, double sum);
+    /// Rewrites each cloth's state.
+    void edit_states(const std::function<void(apsl_solve_state&)>& edit);
+};
+
+}  // namespace apsl::test

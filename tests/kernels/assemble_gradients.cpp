@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/launch.hpp"
+#include "support/tolerances.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+double sum(const std::vector<double>& numbers) {
+    return std::accumulate(numbers.begin(), numbers.end(), 0.0);
+}
+
+// What the groups report of the areas, against the reference's areas.
+void check_area_sums(const Arrays& arrays) {
+    for (std::size_t c = 0; c < arrays.cloth_count(); ++c) {
+        const Cloth& cloth = arrays.sources[c];
+        const std::size_t count = cloth.rest_areas.size();
+        double greatest = 0.0, squares = 0.0, area_ratio = 0.0;
+        for (std::size_t a = 0; a < count; ++a) {
+            const double area = arrays.solves[c].geometry[a].area;
+            const double change = std::abs(area - cloth.rest_areas[a]) / cloth.rest_areas[a];
+            greatest = std::max(greatest, change);
+            squares += change * change;
+            area_ratio = std::max(area_ratio, area / cloth.rest_areas[a]);
+        }
+        const std::vector<double> greatest_got = arrays.partials_of(c, APSL_PARTIAL_MAX_CHANGE);
+        // An area comes of about ten roundings, and A − A⁰ keeps the absolute error of A.
+        const double absolute = elementwise_tolerance(10) * area_ratio;
+        CHECK(std::abs(*std::max_element(greatest_got.begin(), greatest_got.end()) - greatest) <= absolute);
+        const double rms = std::sqrt(squares / static_cast<double>(count));
+        const double got =
+            std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_SQUARED_CHANGE)) / static_cast<double>(count));
+        CHECK(std::abs(got - rms) <= absolute + sum_tolerance(4, count) * rms);
+        CHECK(sum(arrays.partials_of(c, APSL_PARTIAL_MEASURED)) == static_cast<double>(count));
+        CHECK(sum(arrays.partials_of(c, APSL_PARTIAL_NOT_FINITE)) == 0.0);
+    }
+}
+
+void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
+    const std::vector<cl_float8> gradients = arrays.gradients.read();
+    const std::vector<float> residual = arrays.residual.read();
+    const double common_alpha = static_cast<double>(arrays.parameters.read()[0].regularization);
+    for (std::size_t c = 0; c < arrays.cloth_count(); ++c) {
+        const ScaledSolve& solve = arrays.solves[c];
+        std::vector<double> got, want, residual_scale;
+        double residual_squared = 0.0;
+        for (std::size_t a = 0; a < solve.scale.size(); ++a) {
+            const cl_float8& g = gradients[arrays.adjacency.cloths[c].triangle_begin + a];
+            const double alpha = alpha_per_triangle ? arrays.sources[c].regularization[a] : common_alpha;
+            for (int k = 0; k < 3; ++k) {
+                got.push_back(static_cast<double>(g.s[k]));
+                want.push_back(solve.scale[a] * solve.geometry[a].gradients[0][k]);
+                got.push_back(static_cast<double>(g.s[4 + k]));
+                want.push_back(solve.scale[a] * solve.geometry[a].gradients[1][k]);
+            }
+            CHECK(std::abs(static_cast<double>(g.s[3]) - (alpha - 1.0) / alpha) <= elementwise_tolerance(2));
+            CHECK(std::abs(static_cast<double>(g.s[7]) - solve.scale[a]) <= elementwise_tolerance(12) * solve.scale[a]);
+            residual_scale.push_back(solve.scale[a] * solve.geometry[a].area);
+            residual_squared += solve.right_hand_side[a] * solve.right_hand_side[a];
+        }
+        // Edge, cross product, normal, cross product, scale: about thirty roundings.
+        CHECK(difference(got, want) <= elementwise_tolerance(30) * norm(want));
+        const double residual_error = elementwise_tolerance(20) * norm(residual_scale);
+        CHECK(difference(arrays.of_cloth(residual, c), solve.right_hand_side) <= residual_error);
+        const double got_norm = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_RESIDUAL_EVEN)));
+        CHECK(std::abs(got_norm - std::sqrt(residual_squared)) <=
+              residual_error + sum_tolerance(2, solve.scale.size()) * got_norm);
+    }
+}
+
+void poison_outputs(Arrays& arrays) {
+    arrays.gradients.write(poison<cl_float8>(arrays.gradients.size()));
+    arrays.residual.write(poison<float>(arrays.residual.size()));
+    arrays.partials.write(poison<float>(arrays.partials.size()));
+}
+
+}  // namespace
+
+TEST_CASE("assemble_gradients: gradients, residual and sums, awkward sizes in every work-group size",
+          "[assemble_gradients]") {
+    for (const std::uint32_t group : work_group_sizes())
+        for (const std::uint32_t size : awkward_sizes(group)) {
+            CAPTURE(group, size);
+            const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(tetrahedron(), 2)};
+            Arrays arrays(cloths, Matrix::printed, {}, 3, false, {3, size % 2});
+            poison_outputs(arrays);
+            launch::assemble_gradients(arrays, {.work_group_size = group});
+            check_gradients(arrays, false);
+            check_area_sums(arrays);
+        }
+}
+
+TEST_CASE("assemble_gradients: any mesh, alpha per triangle, the same bytes twice", "[assemble_gradients]") {
+    const Build build{.alpha_per_triangle = true};
+    const std::vector<Cloth> cloths{make_cloth(grid(17, 13, 1.0, 2.0, Diagonals::random), 1), make_cloth(book(4), 2),
+                                    make_cloth(fan(9), 3), make_cloth(right_triangle(), 4)};
+    Arrays arrays(cloths, Matrix::printed, {}, 2, true, {3, 5});
+    poison_outputs(arrays);
+    launch::assemble_gradients(arrays, build);
+    check_gradients(arrays, true);
+    check_area_sums(arrays);
+
+    const auto gradients = arrays.gradients.read();
+    const auto residual = arrays.residual.read();
+    const auto partials = arrays.partials.read();
+    poison_outputs(arrays);
+    launch::assemble_gradients(arrays, build);
+    CHECK(same_bytes(gradients, arrays.gradients.read()));
+    CHECK(same_bytes(residual, arrays.residual.read()));
+    CHECK(same_bytes(partials, arrays.partials.read()));
+}
+
+TEST_CASE("assemble_gradients: writes no triangle of a stopped cloth", "[assemble_gradients]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
+    Arrays arrays(cloths, Matrix::printed, {}, 2);
+    poison_outputs(arrays);
+    arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
+    launch::assemble_gradients(arrays, {});
+    CHECK(same_bytes(arrays.gradients.read(), poison<cl_float8>(arrays.gradients.size())));
+    CHECK(same_bytes(arrays.residual.read(), poison<float>(arrays.residual.size())));
+}
+
+TEST_CASE("assemble_gradients: a triangle without area, free vertices or rest area has no part in the solve",
+          "[assemble_gradients]") {
+    std::vector<Cloth> cloths{make_cloth(strip(9), 1)};
+    for (std::size_t k = 0; k < 3; ++k) {
+        cloths[0].positions[3 + k] = cloths[0].positions[k];  // triangle 0 has no area
+        cloths[0].inverse_masses[4 + k] = 0.0;                // triangle 4 is pinned
+    }
+    cloths[0].rest_areas[8] = 0.0;
+    Arrays arrays(cloths, Matrix::printed, {}, 1);
+    poison_outputs(arrays);
+    launch::assemble_gradients(arrays, {});
+    const std::vector<cl_float8> gradients = arrays.gradients.read();
+    for (int k : {0, 1, 2, 4, 5, 6}) {
+        CHECK(gradients[0].s[k] == 0.0f);
+        CHECK(gradients[4].s[k] == 0.0f);
+        CHECK(gradients[8].s[k] == 0.0f);
+    }
+    CHECK(arrays.residual.read()[4] == 0.0f);
+    CHECK(arrays.residual.read()[8] == 0.0f);
+    CHECK(arrays.partials_of(0, APSL_PARTIAL_MEASURED)[0] == 8.0);
+    CHECK(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)[0] == 0.0);
+    CHECK(std::isfinite(arrays.partials_of(0, APSL_PARTIAL_SQUARED_CHANGE)[0]));
+    CHECK(std::isfinite(arrays.partials_of(0, APSL_PARTIAL_RESIDUAL_EVEN)[0]));
+}
+
+TEST_CASE("measure_area_change: awkward sizes in every work-group size", "[measure_area_change]") {
+    for (const std::uint32_t group : work_group_sizes())
+        for (const std::uint32_t size : awkward_sizes(group)) {
+            CAPTURE(group, size);
+            const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(tetrahedron(), 2)};
+            Arrays arrays(cloths, Matrix::printed, {}, 3, false, {3, 9});
+            arrays.partials.write(poison<float>(arrays.partials.size()));
+            launch::measure_area_change(arrays, {.work_group_size = group});
+            check_area_sums(arrays);
+        }
+}
+
+TEST_CASE("measure_area_change: counts the triangles that are not finite", "[measure_area_change]") {
+    for (const double bad : {std::nan(""), static_cast<double>(INFINITY), -static_cast<double>(INFINITY), 3e38}) {
+        CAPTURE(bad);
+        const std::vector<Cloth> cloths{make_cloth(strip(40), 1)};
+        Arrays arrays(cloths, Matrix::printed, {}, 2);
+        std::vector<cl_float4> predicted = arrays.predicted.read();
+        predicted[20].s[1] = static_cast<float>(bad);  // at three triangles of the strip
+        arrays.predicted.write(predicted);
+        launch::measure_area_change(arrays, {});
+        CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)) == 3.0);
+        launch::assemble_gradients(arrays, {});
+        CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)) == 3.0);
+    }
+}

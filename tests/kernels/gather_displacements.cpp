@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/launch.hpp"
+#include "reference/displacements.hpp"
+#include "support/tolerances.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+void with_pressure(Arrays& arrays) {
+    arrays.edit_states([](apsl_solve_state& state) { state.has_pressure = 1; });
+    arrays.pressure.write(arrays.over_triangles([](std::size_t c, std::size_t a) {
+        return 0.01 * std::cos(2.3 * static_cast<double>(a) + static_cast<double>(c));
+    }));
+}
+
+void check_displaced(Arrays& arrays, const Build& build) {
+    with_pressure(arrays);
+    const std::vector<cl_float4> before = arrays.predicted.read();
+    launch::gather_displacements(arrays, build, 0);
+    const std::vector<cl_float4> after = arrays.predicted.read();
+    const std::vector<float> pressure = arrays.pressure.read();
+    for (std::size_t c = 0; c < arrays.cloth_count(); ++c) {
+        const Cloth& cloth = arrays.sources[c];
+        std::vector<double> lambda = arrays.of_cloth(pressure, c);
+        for (std::size_t a = 0; a < lambda.size(); ++a) lambda[a] *= arrays.solves[c].scale[a];
+        std::vector<double> moves;
+        reference::displacements<double>(*cloth.topology, arrays.solves[c].geometry, cloth.inverse_masses, lambda,
+                                         moves);
+        std::vector<double> got, want, scale;
+        for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v) {
+            const std::size_t i = arrays.adjacency.cloths[c].vertex_begin + v;
+            for (std::size_t k = 0; k < 3; ++k) {
+                got.push_back(static_cast<double>(after[i].s[k]));
+                want.push_back(cloth.positions[3 * v + k] + moves[3 * v + k]);
+                if (cloth.inverse_masses[v] == 0.0) CHECK(after[i].s[k] == before[i].s[k]);
+            }
+            CHECK(after[i].s[3] == before[i].s[3]);
+            // Magnitudes of the terms of the vertex' sum: they cancel.
+            double terms = 0.0;
+            for (std::uint32_t n = cloth.topology->corner_offsets()[v]; n < cloth.topology->corner_offsets()[v + 1];
+                 ++n) {
+                const Corner corner = cloth.topology->corners()[n];
+                terms +=
+                    std::abs(lambda[corner / 3]) * arrays.solves[c].geometry[corner / 3].gradients[corner % 3].norm();
+            }
+            scale.push_back(cloth.inverse_masses[v] * terms);
+        }
+        CHECK(difference(got, want) <= elementwise_tolerance(8) * norm(scale) + elementwise_tolerance(1) * norm(want));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("gather_displacements: awkward sizes in every work-group size", "[gather_displacements]") {
+    for (const std::uint32_t group : work_group_sizes())
+        for (const std::uint32_t size : awkward_sizes(group)) {
+            CAPTURE(group, size);
+            const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(strip(5), 2)};
+            Arrays arrays(cloths, Matrix::consistent, {}, 3);
+            check_displaced(arrays, {.work_group_size = group});
+        }
+}
+
+TEST_CASE("gather_displacements: every kind of mesh, the same bytes twice", "[gather_displacements]") {
+    const std::vector<Cloth> cloths{make_cloth(grid(9, 11, 1.0, 1.0, Diagonals::alternating), 1),
+                                    make_cloth(tetrahedron(), 3), make_cloth(book(4), 4), make_cloth(fan(30), 5),
+                                    make_cloth(right_triangle(), 6)};
+    Arrays arrays(cloths, Matrix::consistent, {}, 2);
+    const std::vector<cl_float4> before = arrays.predicted.read();
+    check_displaced(arrays, {});
+    const std::vector<cl_float4> first = arrays.predicted.read();
+    arrays.predicted.write(before);
+    check_displaced(arrays, {});
+    CHECK(same_bytes(first, arrays.predicted.read()));
+}
+
+TEST_CASE("gather_displacements: moves nothing once stopped or without a pressure", "[gather_displacements]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
+    Arrays arrays(cloths, Matrix::consistent, {}, 2);
+    const std::vector<cl_float4> before = arrays.predicted.read();
+    with_pressure(arrays);
+    arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
+    launch::gather_displacements(arrays, {}, 0);
+    CHECK(same_bytes(before, arrays.predicted.read()));
+    CHECK(arrays.stats.read()[0].residual == 0.0f);
+
+    arrays.edit_states([](apsl_solve_state& state) { state.stopped = state.has_pressure = 0; });
+    arrays.pressure.write(poison<float>(arrays.pressure.size()));
+    launch::gather_displacements(arrays, {}, 0);
+    CHECK(same_bytes(before, arrays.predicted.read()));
+}
+
+TEST_CASE("gather_displacements: keeps the greatest residual and says where the tolerance was missed",
+          "[gather_displacements]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
+    Arrays arrays(cloths, Matrix::consistent, {.tolerance = 0.1f}, 3);
+    with_pressure(arrays);
+    arrays.edit_states([](apsl_solve_state& state) { state.initial_residual = 100.0f; });
+    const auto end_with = [&](const std::vector<double>& residual_squared) {
+        arrays.write_partials(0, APSL_PARTIAL_RESIDUAL_ODD, residual_squared);
+        launch::gather_displacements(arrays, {}, 1);
+        return arrays.stats.read()[0];
+    };
+    const apsl_stats met = end_with({0.2, 0.3, 0.14});  // √0.64 / 10
+    CHECK(std::abs(static_cast<double>(met.residual) - 0.08) <= elementwise_tolerance(4) * 0.08);
+    CHECK(met.status == APSL_STATUS_OK);
+    const apsl_stats missed = end_with({2.0, 1.0, 1.0});
+    CHECK(std::abs(static_cast<double>(missed.residual) - 0.2) <= elementwise_tolerance(4) * 0.2);
+    CHECK(missed.status == APSL_STATUS_NOT_CONVERGED);
+    const apsl_stats met_again = end_with({0.2, 0.3, 0.14});
+    CHECK(met_again.residual == missed.residual);
+    CHECK(met_again.status == APSL_STATUS_NOT_CONVERGED);
+}

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/launch.hpp"
+
+#include "host/kernel_launch.hpp"
+#include "host/program.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace apsl::test {
+namespace {
+
+using host::set_arguments;
+
+const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string_view file, const char* name) {
+    const auto define = [](const char* macro, std::uint32_t value) {
+        return std::string(" -D ") + macro + "=" + std::to_string(value);
+    };
+    const std::string options = "-cl-std=CL1.2" + define("APSL_WORK_GROUP_SIZE", build.work_group_size) +
+                                define("APSL_POSITION_STRIDE", arrays.position_placement.stride) +
+                                define("APSL_VELOCITY_STRIDE", arrays.velocity_placement.stride) +
+                                define("APSL_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
+                                define("APSL_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0);
+    static std::map<std::string, host::ProgramHandle> programs;
+    static std::map<std::string, host::Kernel> kernels;
+    const std::string program_key = std::string(file) + options;
+    if (!programs.contains(program_key))
+        programs[program_key] =
+            host::build_program(device().context, device().id, host::program_source({&file, 1}), options);
+    const std::string kernel_key = program_key + name;
+    if (!kernels.contains(kernel_key))
+        kernels.emplace(kernel_key, host::create_kernel(programs[program_key].get(), name));
+    return kernels.at(kernel_key);
+}
+
+void run(const host::Kernel& kernel, std::uint32_t groups, const Build& build, std::size_t cloths) {
+    static const Owned<cl_command_queue> queue = in_order_queue();
+    const std::array<std::size_t, 2> global{std::size_t{groups} * build.work_group_size, cloths};
+    const std::array<std::size_t, 2> local{build.work_group_size, 1};
+    require_success(clEnqueueNDRangeKernel(queue.get(), kernel.handle.get(), 2, nullptr, global.data(), local.data(), 0,
+                                           nullptr, nullptr),
+                    kernel.name.c_str());
+    require_success(clFinish(queue.get()), kernel.name.c_str());
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> work_group_sizes() {
+    std::size_t greatest = 0;
+    require_success(clGetDeviceInfo(device().id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof greatest, &greatest, nullptr),
+                    "clGetDeviceInfo");
+    std::vector<std::uint32_t> sizes{1, 32, 64, 256};
+    std::erase_if(sizes, [&](std::uint32_t size) { return size > greatest; });
+    return sizes;
+}
+
+std::vector<std::uint32_t> awkward_sizes(std::uint32_t work_group_size) {
+    std::vector<std::uint32_t> sizes{1, std::max(work_group_size - 1, 1u), work_group_size, work_group_size + 1, 4093};
+    sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+    return sizes;
+}
+
+namespace launch {
+
+void predict_positions(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "predict_positions.cl", "predict_positions");
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.predicted, a.caller_positions,
+                  cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset},
+                  a.inverse_masses, cl_ulong{a.array_offset});
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void assemble_gradients(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "assemble_gradients");
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients, a.residual,
+                  a.rest_areas, cl_ulong{a.array_offset}, build.alpha_per_triangle ? a.regularization : a.rest_areas,
+                  cl_ulong{a.array_offset});
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void measure_area_change(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "measure_area_change");
+    set_arguments(k, 0, a.cloths, a.partials, a.triangles, a.predicted, a.rest_areas, cl_ulong{a.array_offset});
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void begin_solve(Arrays& a, const Build& build, int sub_step) {
+    const host::Kernel& k = kernel(a, build, "solve_control.cl", "begin_solve");
+    set_arguments(k, 0, a.parameters, a.states, a.stats, a.partials, cl_uint{a.groups}, cl_int{sub_step});
+    run(k, 1, build, a.cloth_count());
+}
+
+void end_call(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "solve_control.cl", "end_call");
+    set_arguments(k, 0, a.stats, a.partials, cl_uint{a.groups});
+    run(k, 1, build, a.cloth_count());
+}
+
+void assemble_pressure_csr(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "assemble_pressure_csr.cl", "assemble_pressure_csr");
+    set_arguments(k, 0, a.cloths, a.states, a.triangles, a.predicted, a.gradients, a.row_offsets, a.columns, a.shared,
+                  a.values);
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void csr_spmv_dot(Arrays& a, const Build& build, int iteration) {
+    const host::Kernel& k = kernel(a, build, "csr_spmv_dot.cl", "csr_spmv_dot");
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.row_offsets, a.columns, a.values, a.residual,
+                  a.product, cl_int{iteration});
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void matrix_free_apply_dot(Arrays& a, const Build& build, int iteration) {
+    if (build.matrix == Matrix::printed) {
+        const host::Kernel& k = kernel(a, build, "matrix_free_printed.cl", "matrix_free_apply_dot");
+        set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients,
+                      a.row_offsets, a.columns, a.shared, a.residual, a.product, cl_int{iteration});
+        run(k, a.groups, build, a.cloth_count());
+        return;
+    }
+    const host::Kernel& gather = kernel(a, build, "matrix_free_consistent.cl", "gather_vertex_forces");
+    set_arguments(gather, 0, a.cloths, a.parameters, a.states, a.partials, a.corner_offsets, a.corners, a.predicted,
+                  a.gradients, a.residual, a.vertex_forces, cl_int{iteration});
+    run(gather, a.groups, build, a.cloth_count());
+    const host::Kernel& apply = kernel(a, build, "matrix_free_consistent.cl", "matrix_free_apply_dot");
+    set_arguments(apply, 0, a.cloths, a.states, a.partials, a.triangles, a.gradients, a.vertex_forces, a.residual,
+                  a.product);
+    run(apply, a.groups, build, a.cloth_count());
+}
+
+void cg_update(Arrays& a, const Build& build, int iteration) {
+    const host::Kernel& k = kernel(a, build, "cg_update.cl", "cg_update");
+    set_arguments(k, 0, a.cloths, a.states, a.stats, a.partials, a.residual, a.product, a.direction,
+                  a.direction_product, a.pressure, cl_int{iteration});
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void gather_displacements(Arrays& a, const Build& build, std::uint32_t slot) {
+    const host::Kernel& k = kernel(a, build, "gather_displacements.cl", "gather_displacements");
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.partials, a.corner_offsets, a.corners, a.gradients,
+                  a.pressure, a.predicted, cl_uint{slot});
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void update_velocities(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "update_velocities.cl", "update_velocities");
+    set_arguments(k, 0, a.cloths, a.parameters, a.stats, a.predicted, a.caller_positions,
+                  cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset});
+    run(k, a.groups, build, a.cloth_count());
+}
+
+}  // namespace launch
+}  // namespace apsl::test

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// Every kernel's argument list, once. Each function builds the kernel's own file alone, launches it over all cloths of
+// the arrays and waits.
+#pragma once
+
+#include "kernels/arrays.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace apsl::test {
+
+/// What a kernel is compiled for; strides and per-triangle α come from the arrays and from `alpha_per_triangle`.
+struct Build {
+    std::uint32_t work_group_size = 64;
+    Matrix matrix = Matrix::consistent;
+    bool alpha_per_triangle = false;
+};
+
+/// 1, 32, 64 and 256 work-items a group, as far as the device goes.
+std::vector<std::uint32_t> work_group_sizes();
+/// 1, one below, at and above a group's size, and many.
+std::vector<std::uint32_t> awkward_sizes(std::uint32_t work_group_size);
+
+namespace launch {
+
+void predict_positions(Arrays& arrays, const Build& build);
+void assemble_gradients(Arrays& arrays, const Build& build);
+void measure_area_change(Arrays& arrays, const Build& build);
+void begin_solve(Arrays& arrays, const Build& build, int sub_step);
+void end_call(Arrays& arrays, const Build& build);
+void assemble_pressure_csr(Arrays& arrays, const Build& build);
+void csr_spmv_dot(Arrays& arrays, const Build& build, int iteration);
+/// Both launches of the consistent matrix, the single one of the printed.
+void matrix_free_apply_dot(Arrays& arrays, const Build& build, int iteration);
+void cg_update(Arrays& arrays, const Build& build, int iteration);
+void gather_displacements(Arrays& arrays, const Build& build, std::uint32_t slot);
+void update_velocities(Arrays& arrays, const Build& build);
+
+}  // namespace launch
+}  // namespace apsl::test
