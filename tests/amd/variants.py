@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""What is compiled: every kernels/*.cl, with the combinations of the defines it reads, for every target.
+
+This is the one place to edit when a kernel file gains a define or a GPU is to be added. Files and the defines each of
+them reads are found in the sources, so a new kernel file needs no entry, and a new define without one is an error.
+"""
+import itertools
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+# The defines that host/ may pass. A file is compiled with every combination of one setting from each axis; defines that
+# stand in one setting vary together. 256 is AMD's default limit of a work-group.
+AXES = [
+    [{"APSL_WORK_GROUP_SIZE": 64}, {"APSL_WORK_GROUP_SIZE": 256}],
+    [{"APSL_MATRIX": 0}, {"APSL_MATRIX": 1}],
+    [{"APSL_POSITION_STRIDE": 3, "APSL_VELOCITY_STRIDE": 3}, {"APSL_POSITION_STRIDE": 4, "APSL_VELOCITY_STRIDE": 4}],
+    [{"APSL_REGULARIZATION_PER_TRIANGLE": 0}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1}],
+]
+
+
+@dataclass(frozen=True)
+class Target:
+    processor: str
+    wave_size: int  # lanes
+    isa: str  # device library that says which instructions there are; a near relative where the GPU is newer than it
+
+    def __str__(self):
+        return f"{self.processor}/{self.wave_size}"
+
+
+# AMD's OpenCL may choose either wave size on RDNA (gfx10 and later); CDNA and GCN have 64 lanes only.
+TARGETS = [
+    Target("gfx906", 64, "906"),  # Vega 20: Radeon VII, MI50
+    Target("gfx90a", 64, "90a"),  # CDNA 2: MI200
+    Target("gfx942", 64, "940"),  # CDNA 3: MI300
+    Target("gfx1030", 32, "1030"),  # RDNA 2: RX 6800, 6900
+    Target("gfx1030", 64, "1030"),
+    Target("gfx1100", 32, "1036"),  # RDNA 3: RX 7900
+    Target("gfx1100", 64, "1036"),
+    Target("gfx1201", 32, "1036"),  # RDNA 4: RX 9070
+    Target("gfx1201", 64, "1036"),
+]
+
+
+class VariantError(Exception):
+    """The kernel sources ask for something the table above does not have."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    source: Path
+    defines: tuple  # pairs (name, value), sorted
+
+    def key(self, kernel):
+        return " ".join([f"{self.source.name}:{kernel}"] + [f"{name}={value}" for name, value in self.defines])
+
+
+_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
+_DEFAULT = re.compile(r"^\s*#\s*ifndef\s+(\w+)\n\s*#\s*define\s+\1[ \t]+\S.*\n\s*#\s*endif", re.MULTILINE)
+_DEFINITION = re.compile(r"^\s*#\s*define\s+(\w+)", re.MULTILINE)
+_CONDITION = re.compile(r"^\s*#\s*(?:el)?if(?:n?def)?\b(.*)$", re.MULTILINE)
+_COMMENT = re.compile(r"//.*")
+_KERNEL = re.compile(r"^(?:APSL_KERNEL|__kernel|kernel)\b[^;{]*?\bvoid\s+(\w+)\s*\(", re.MULTILINE)
+
+
+def _text_with_includes(path, seen):
+    if path in seen or not path.exists():
+        return ""
+    seen.add(path)
+    text = _COMMENT.sub("", path.read_text(encoding="utf-8"))
+    return text + "\n".join(_text_with_includes(path.parent / name, seen) for name in _INCLUDE.findall(text))
+
+
+def defines_read_by(source):
+    """Names that preprocessor conditions of a file and its includes ask for and that nothing there fixes."""
+    text = _text_with_includes(source, set())
+    fixed = set(_DEFINITION.findall(_DEFAULT.sub("", text)))
+    asked = {name for condition in _CONDITION.findall(text) for name in re.findall(r"\bAPSL_\w+", condition)}
+    return sorted(asked - fixed)
+
+
+def variants(kernels):
+    """All variants of the .cl files of a folder."""
+    sources = sorted(kernels.glob("*.cl"))
+    if not sources:
+        raise VariantError(f"{kernels} holds no .cl files")
+    found = []
+    for source in sources:
+        names = defines_read_by(source)
+        for name in names:
+            if not any(name in setting for axis in AXES for setting in axis):
+                raise VariantError(f"{source.name} reads {name}, expected its values in AXES of tests/amd/variants.py")
+        # Of each axis what the file reads, every setting once.
+        axes = [dict.fromkeys(tuple((n, v) for n, v in setting.items() if n in names) for setting in axis)
+                for axis in AXES]
+        for settings in itertools.product(*axes):
+            found.append(Variant(source, tuple(sorted(itertools.chain(*settings)))))
+    return found
+
+
+def kernels_named_in(kernels):
+    """Pairs (file name, kernel) of every kernel defined in a folder, whatever conditions it stands behind."""
+    return sorted((path.name, name) for path in kernels.iterdir() if path.suffix in (".cl", ".h")
+                  for name in _KERNEL.findall(_COMMENT.sub("", path.read_text(encoding="utf-8"))))
