@@ -22,8 +22,8 @@ struct PinTranslation {
 struct PinRotation {
     std::array<double, 3> axis{0.0, 1.0, 0.0};  ///< any length but zero; turns by the right-hand rule
     double degrees_per_second = 0.0;            ///< degree/s
-    std::optional<std::array<double, 3>>
-        center;  ///< m, a point of the axis; none: centroid of the group's rest positions
+    /// m, a point of the axis; none: centroid of the group's rest positions.
+    std::optional<std::array<double, 3>> center{};
 };
 
 struct PinMotion {

@@ -36,11 +36,11 @@ std::vector<Spring> bending_springs(const Topology& topology, std::span<const do
 /// springs.
 struct StandAloneSprings {
     std::vector<Spring> springs;
-    std::size_t bending = 0;      ///< across interior edges
-    std::size_t lattices = 0;     ///< connected parts that these leave the mesh in, all its components together
-    std::size_t second_ring = 0;  ///< between vertices two edges apart, one of them not held from all sides
-    std::size_t connecting = 0;   ///< between vertices two edges apart, in different lattices
-    std::size_t along_edges = 0;  ///< in patches too small for either
+    std::size_t bending = 0;           ///< across interior edges
+    std::size_t lattices = 0;          ///< connected parts that these leave the mesh in, all its components together
+    std::size_t second_ring = 0;       ///< between vertices two edges apart, one of them not held from all sides
+    std::size_t between_lattices = 0;  ///< between vertices two edges apart, in different lattices
+    std::size_t connecting = 0;        ///< along edges, in patches too small for either
 };
 
 /// What holds a cloth together where area is all else that does (no stretch springs).

@@ -108,7 +108,7 @@ StandAloneSprings stand_alone_springs(const Topology& topology, std::span<const 
         const bool at_loose_vertex = !held[a] || !held[b];
         if (at_loose_vertex || parts.part_of(a) != parts.part_of(b)) {
             springs.push_back(make_spring(a, b, rest_positions, stiffness));
-            ++(at_loose_vertex ? result.second_ring : result.connecting);
+            ++(at_loose_vertex ? result.second_ring : result.between_lattices);
         }
     }
     // A patch of a few triangles may have no second ring.
@@ -116,7 +116,7 @@ StandAloneSprings stand_alone_springs(const Topology& topology, std::span<const 
     for (const auto& [a, b] : topology.edges()) {
         if (parts.part_of(a) != parts.part_of(b)) {
             springs.push_back(make_spring(a, b, rest_positions, stiffness));
-            ++result.along_edges;
+            ++result.connecting;
         }
     }
     return result;
