@@ -15,8 +15,9 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-// A vertex between two colliders is pushed to and fro; after this many rounds the last push stands.
-constexpr int max_rounds = 16;
+// A vertex in the wedge between two colliders is pushed to and fro, each time by less, the slower the sharper the
+// wedge. After this many rounds the last push stands.
+constexpr int max_rounds = 128;
 // m. From the second round on, less than this counts as on the surface: a push leaves rounding errors behind.
 constexpr double slack = 1e-10;
 

@@ -51,8 +51,8 @@ AreaChange summarize(const ClothState& cloth, const std::vector<double>& changes
     std::size_t counted = 0;
     for (std::size_t triangle = 0; triangle < changes.size(); ++triangle) {
         if (cloth.rest_areas[triangle] > 0.0) {
-            // Not std::max: a NaN must show, not vanish in a comparison.
-            if (!(changes[triangle] <= summary.max)) {
+            // Not std::max alone: a NaN must show and stay.
+            if (changes[triangle] > summary.max || std::isnan(changes[triangle])) {
                 summary.max = changes[triangle];
             }
             sum_of_squares += changes[triangle] * changes[triangle];

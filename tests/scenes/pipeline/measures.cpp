@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/measures.hpp"
+
+#include "pipeline/advance.hpp"
+#include "sample_cloth.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace apsl;
+using namespace apsl::scenes;
+
+TEST_CASE("measures: a triangle drawn out to twice its height has area change 1, before it has moved") {
+    ClothState cloth = sample_cloth(test::right_triangle());
+    cloth.velocities[7] = 2.0;  // vertex 2 from (0, 1, 0) to (0, 2, 0) in half a second
+    CHECK(area_changes(cloth)[0] == 0.0);
+    CHECK(predicted_area_changes(cloth, 0.5)[0] == Approx(1.0).epsilon(1e-15));
+    advance_positions(cloth, 0.5);
+    CHECK(area_changes(cloth)[0] == Approx(1.0).epsilon(1e-15));
+    const EdgeStretch stretch = edge_stretch(cloth);
+    CHECK(stretch.max == Approx(2.0).epsilon(1e-15));
+    CHECK(stretch.min == Approx(1.0).epsilon(1e-15));
+}
+
+TEST_CASE("measures: a cloth scaled to half its size has every area change 3/4 and every stretch 1/2") {
+    const test::Mesh mesh = test::grid(6, 4, 1.0, 1.0, test::Diagonals::random);
+    ClothState cloth = sample_cloth(mesh);
+    cloth.positions = moved(mesh.positions, -0.5, mesh.positions);
+    const AreaChange change = summarize(cloth, area_changes(cloth));
+    CHECK(change.max == Approx(0.75).epsilon(1e-13));
+    CHECK(change.rms == Approx(0.75).epsilon(1e-13));
+    CHECK(edge_stretch(cloth).min == Approx(0.5).epsilon(1e-13));
+    CHECK(edge_stretch(cloth).max == Approx(0.5).epsilon(1e-13));
+}
+
+TEST_CASE("measures: greatest and root mean square by hand, triangles without rest area left out") {
+    ClothState cloth = sample_cloth(test::grid(2, 2, 1.0, 1.0, test::Diagonals::uniform));
+    AreaChange change = summarize(cloth, {0.3, 0.4});
+    CHECK(change.max == 0.4);
+    CHECK(change.rms == Approx(std::sqrt(0.125)).epsilon(1e-15));
+    cloth.rest_areas[1] = 0.0;
+    change = summarize(cloth, {0.3, 0.4});
+    CHECK(change.max == 0.3);
+    CHECK(change.rms == Approx(0.3).epsilon(1e-15));
+    CHECK(area_changes(cloth)[1] == 0.0);
+}
+
+TEST_CASE("measures: a number that is not finite shows in the summary") {
+    ClothState cloth = sample_cloth(test::grid(2, 2, 1.0, 1.0, test::Diagonals::uniform));
+    cloth.positions[0] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(std::isnan(summarize(cloth, area_changes(cloth)).max));
+    CHECK(std::isnan(summarize(cloth, area_changes(cloth)).rms));
+}
