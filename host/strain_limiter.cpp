@@ -102,10 +102,11 @@ void check_view(const BufferView& view, std::size_t floats, const char* name) {
                 ", expected a multiple of 4 bytes");
     std::size_t size = 0;
     check(clGetMemObjectInfo(view.buffer, CL_MEM_SIZE, sizeof size, &size, nullptr), "asking a buffer for its size");
-    const std::size_t needed = view.offset + floats * sizeof(float);
-    if (size < needed)
+    const std::size_t needed = floats * sizeof(float);
+    // Subtracted rather than added: an offset near the end of the range must not wrap round.
+    if (view.offset > size || size - view.offset < needed)
         invalid(std::string("buffers.") + name + " holds " + std::to_string(size) + " bytes, expected at least " +
-                std::to_string(needed));
+                std::to_string(needed) + " from offset " + std::to_string(view.offset) + " on");
 }
 
 }  // namespace
