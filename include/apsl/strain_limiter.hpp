@@ -42,9 +42,9 @@ struct BufferView {
 struct Buffers {
     BufferView positions;   ///< m, 3 floats every Options::position_stride, [V]; x̃, the start of the step; only read
     BufferView velocities;  ///< m/s, 3 floats every Options::velocity_stride, [V]; ṽ in and out
-    BufferView inverse_masses;  ///< 1/kg, [V], 0 pins a vertex
-    BufferView rest_areas;      ///< m², [T]; a triangle with rest area ≤ 0 is left alone
-    BufferView regularization;  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
+    BufferView inverse_masses;       ///< 1/kg, [V], 0 pins a vertex
+    BufferView rest_areas;           ///< m², [T]; a triangle with rest area ≤ 0 is left alone
+    BufferView regularization = {};  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
 };
 
 /// One kernel's share of the profiled commands (see StrainLimiter::profile).

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include <apsl/apsl.h>
+#include <apsl/strain_limiter.hpp>
+
+#include <exception>
+#include <new>
+#include <string>
+
+struct apsl_topology {
+    std::shared_ptr<const apsl::Topology> topology;
+};
+
+struct apsl_limiter {
+    apsl::StrainLimiter limiter;
+};
+
+namespace {
+
+static_assert(sizeof(apsl_limiter_stats) == sizeof(apsl::Stats));
+static_assert(static_cast<int>(apsl::Status::diverged) == APSL_LIMITER_DIVERGED);
+static_assert(static_cast<int>(apsl::ErrorCode::unsupported) == APSL_ERROR_UNSUPPORTED);
+static_assert(static_cast<int>(apsl::Matrix::printed) == APSL_MATRIX_PRINTED);
+static_assert(static_cast<int>(apsl::Apply::matrix_free) == APSL_APPLY_MATRIX_FREE);
+
+std::string& last_error() {
+    thread_local std::string message;
+    return message;
+}
+
+apsl_result fail(apsl_result result, const char* message) noexcept {
+    try {
+        last_error() = message;
+    } catch (...) {
+        last_error().clear();  // no memory for the message; the result stands
+    }
+    return result;
+}
+
+/// No exception crosses into C.
+template <class Action>
+apsl_result guarded(const Action& action) noexcept {
+    try {
+        action();
+        return APSL_SUCCESS;
+    } catch (const apsl::Error& error) {
+        return fail(static_cast<apsl_result>(error.code()), error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(APSL_ERROR_OUT_OF_MEMORY, "out of host memory");
+    } catch (const std::exception& error) {
+        return fail(APSL_ERROR_INTERNAL, error.what());
+    } catch (...) {
+        return fail(APSL_ERROR_INTERNAL, "unknown error");
+    }
+}
+
+void require(const void* pointer, const char* name) {
+    if (!pointer) throw apsl::Error(apsl::ErrorCode::invalid_argument, std::string(name) + " is null");
+}
+
+std::span<const cl_event> events(cl_uint wait_count, const cl_event* wait_list) {
+    if (wait_count > 0) require(wait_list, "wait_list");
+    return {wait_list, wait_count};
+}
+
+apsl::Options options_from(const apsl_limiter_options& o) {
+    return {.matrix = static_cast<apsl::Matrix>(o.matrix),
+            .apply = static_cast<apsl::Apply>(o.apply),
+            .work_group_size = o.work_group_size,
+            .position_stride = o.position_stride,
+            .velocity_stride = o.velocity_stride,
+            .regularization_per_triangle = o.regularization_per_triangle != 0};
+}
+
+apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
+    return {.time_step = p.time_step,
+            .regularization = p.regularization,
+            .sub_steps = p.sub_steps,
+            .target_area_change = p.target_area_change,
+            .tolerance = p.tolerance,
+            .max_iterations = p.max_iterations};
+}
+
+apsl::BufferView view_from(const apsl_buffer_view& view) {
+    return {view.buffer, view.offset};
+}
+
+}  // namespace
+
+const char* apsl_last_error(void) {
+    return last_error().c_str();
+}
+
+apsl_limiter_options apsl_limiter_default_options(void) {
+    const apsl::Options o;
+    return {static_cast<int32_t>(o.matrix),
+            static_cast<int32_t>(o.apply),
+            o.work_group_size,
+            o.position_stride,
+            o.velocity_stride,
+            o.regularization_per_triangle};
+}
+
+apsl_limiter_parameters apsl_limiter_default_parameters(void) {
+    const apsl::Parameters p;
+    return {p.time_step, p.regularization, p.sub_steps, p.target_area_change, p.tolerance, p.max_iterations};
+}
+
+apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_count, size_t vertex_count,
+                                 apsl_topology** topology) {
+    return guarded([&] {
+        require(topology, "topology");
+        *topology = nullptr;
+        if (triangle_count > 0) require(triangles, "triangles");
+        std::vector<apsl::Triangle> list(triangle_count);
+        for (size_t a = 0; a < triangle_count; ++a)
+            list[a] = {triangles[3 * a], triangles[3 * a + 1], triangles[3 * a + 2]};
+        *topology = new apsl_topology{apsl::Topology::build(list, vertex_count)};
+    });
+}
+
+void apsl_topology_destroy(apsl_topology* topology) {
+    delete topology;
+}
+
+apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
+                                size_t cloth_count, const apsl_limiter_options* options, apsl_limiter** limiter) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        *limiter = nullptr;
+        if (cloth_count > 0) require(cloths, "cloths");
+        std::vector<std::shared_ptr<const apsl::Topology>> topologies;
+        for (size_t c = 0; c < cloth_count; ++c) {
+            require(cloths[c], "a cloth's topology");
+            topologies.push_back(cloths[c]->topology);
+        }
+        *limiter = new apsl_limiter{
+            apsl::StrainLimiter(context, device, topologies, options ? options_from(*options) : apsl::Options{})};
+    });
+}
+
+void apsl_limiter_destroy(apsl_limiter* limiter) {
+    delete limiter;
+}
+
+size_t apsl_limiter_scratch_bytes(const apsl_limiter* limiter) {
+    return limiter ? limiter->limiter.scratch_bytes() : 0;
+}
+
+apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, const apsl_limiter_buffers* buffers,
+                                 const apsl_limiter_parameters* parameters, size_t parameter_count, cl_uint wait_count,
+                                 const cl_event* wait_list, cl_event* event) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        require(buffers, "buffers");
+        if (parameter_count > 0) require(parameters, "parameters");
+        std::vector<apsl::Parameters> list;
+        for (size_t c = 0; c < parameter_count; ++c) list.push_back(parameters_from(parameters[c]));
+        const apsl::Buffers views{.positions = view_from(buffers->positions),
+                                  .velocities = view_from(buffers->velocities),
+                                  .inverse_masses = view_from(buffers->inverse_masses),
+                                  .rest_areas = view_from(buffers->rest_areas),
+                                  .regularization = view_from(buffers->regularization)};
+        const cl_event end = limiter->limiter.enqueue(queue, views, list, events(wait_count, wait_list));
+        if (event)
+            *event = end;
+        else
+            clReleaseEvent(end);
+    });
+}
+
+apsl_result apsl_limiter_read_stats(const apsl_limiter* limiter, cl_command_queue queue, apsl_limiter_stats* stats,
+                                    size_t stats_count, cl_uint wait_count, const cl_event* wait_list,
+                                    cl_event* event) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        require(event, "event");
+        if (stats_count > 0) require(stats, "stats");
+        // The device writes the bytes; both structs are its layout.
+        const std::span<apsl::Stats> list(reinterpret_cast<apsl::Stats*>(stats), stats_count);
+        *event = limiter->limiter.read_stats(queue, list, events(wait_count, wait_list));
+    });
+}
