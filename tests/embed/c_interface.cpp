@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "embed/c_program.h"
+#include "support/device_cloth.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <thread>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+apsl_limiter_buffers c_views(const CallerBuffers& buffers) {
+    const Buffers v = buffers.views();
+    return {{v.positions.buffer, v.positions.offset},
+            {v.velocities.buffer, v.velocities.offset},
+            {v.inverse_masses.buffer, v.inverse_masses.offset},
+            {v.rest_areas.buffer, v.rest_areas.offset},
+            {v.regularization.buffer, v.regularization.offset}};
+}
+
+struct CTopology {
+    apsl_topology* topology = nullptr;
+    explicit CTopology(const MovingCloth& cloth) {
+        REQUIRE(apsl_topology_create(cloth.topology->triangles().data()->data(), cloth.topology->triangle_count(),
+                                     cloth.topology->vertex_count(), &topology) == APSL_SUCCESS);
+    }
+    ~CTopology() { apsl_topology_destroy(topology); }
+};
+
+}  // namespace
+
+TEST_CASE("the C interface does what the C++ one does, byte for byte", "[embed]") {
+    const MovingCloth cloth = moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1);
+    const CallerBuffers expected({&cloth, 1}, {}), buffers({&cloth, 1}, {});
+    StrainLimiter limiter(device().context, device().id, cloth.topology);
+    const Parameters parameters;
+    const std::vector<Stats> expected_stats = filter(limiter, expected, {&parameters, 1});
+
+    const Owned<cl_command_queue> queue = in_order_queue();
+    const apsl_limiter_buffers views = c_views(buffers);
+    apsl_limiter_stats stats{};
+    std::size_t scratch_bytes = 0;
+    REQUIRE(filter_in_c(device().context, device().id, queue.get(), cloth.topology->triangles().data()->data(),
+                        cloth.topology->triangle_count(), cloth.topology->vertex_count(), &views, &stats,
+                        &scratch_bytes) == APSL_SUCCESS);
+    CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
+    CHECK(std::memcmp(&stats, expected_stats.data(), sizeof stats) == 0);
+    CHECK(stats.sub_steps == parameters.sub_steps);
+    CHECK(scratch_bytes == limiter.scratch_bytes());
+}
+
+TEST_CASE("the C interface: every error is a result and one line, nothing is thrown", "[embed]") {
+    const MovingCloth cloth = moving_cloth(tetrahedron(), 1);
+    const CallerBuffers buffers({&cloth, 1}, {});
+    const Owned<cl_command_queue> queue = in_order_queue();
+    const auto last_error_says = [](const std::string& what) {
+        const std::string message = apsl_last_error();
+        CAPTURE(message, what);
+        CHECK(message.find(what) != std::string::npos);
+        CHECK(message.find('\n') == std::string::npos);
+    };
+
+    const std::uint32_t bad[] = {0, 1, 9};
+    int elsewhere_entirely = 0;  // what a failure must overwrite with null
+    apsl_topology* topology = reinterpret_cast<apsl_topology*>(&elsewhere_entirely);
+    CHECK(apsl_topology_create(bad, 1, 3, &topology) == APSL_ERROR_INVALID_MESH);
+    CHECK(topology == nullptr);
+    last_error_says("9");
+    CHECK(apsl_topology_create(nullptr, 1, 3, &topology) == APSL_ERROR_INVALID_ARGUMENT);
+    last_error_says("triangles is null");
+    CHECK(apsl_topology_create(bad, 1, 3, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(apsl_topology_create(nullptr, 0, 3, &topology) == APSL_ERROR_INVALID_MESH);
+
+    const CTopology good(cloth);
+    const apsl_topology* const cloths[] = {good.topology, nullptr};
+    apsl_limiter* limiter = reinterpret_cast<apsl_limiter*>(&elsewhere_entirely);
+    apsl_limiter_options options = apsl_limiter_default_options();
+    options.position_stride = 1;
+    CHECK(apsl_limiter_create(device().context, device().id, cloths, 1, &options, &limiter) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(limiter == nullptr);
+    last_error_says("position_stride is 1");
+    CHECK(apsl_limiter_create(device().context, device().id, cloths, 2, nullptr, &limiter) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    last_error_says("topology is null");
+    CHECK(apsl_limiter_create(nullptr, device().id, cloths, 1, nullptr, &limiter) == APSL_ERROR_OPENCL);
+    CHECK(apsl_limiter_scratch_bytes(nullptr) == 0);
+    REQUIRE(apsl_limiter_create(device().context, device().id, cloths, 1, nullptr, &limiter) == APSL_SUCCESS);
+
+    const apsl_limiter_buffers views = c_views(buffers);
+    apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+    parameters.regularization = 0.5f;
+    cl_event event = nullptr;
+    CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 0, nullptr, &event) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(event == nullptr);
+    last_error_says("regularization is 0.5");
+    parameters = apsl_limiter_default_parameters();
+    CHECK(apsl_limiter_enqueue(limiter, queue.get(), nullptr, &parameters, 1, 0, nullptr, &event) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(apsl_limiter_enqueue(nullptr, queue.get(), &views, &parameters, 1, 0, nullptr, &event) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, nullptr, 1, 0, nullptr, &event) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 1, nullptr, &event) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    last_error_says("wait_list is null");
+    apsl_limiter_stats stats{};
+    CHECK(apsl_limiter_read_stats(limiter, queue.get(), &stats, 1, 0, nullptr, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
+    last_error_says("event is null");
+
+    // The message is this thread's own.
+    std::string elsewhere = "not asked";
+    std::thread([&] { elsewhere = apsl_last_error(); }).join();
+    CHECK(elsewhere.empty());
+    last_error_says("event is null");
+
+    // An event nobody wants is released; the call happens all the same.
+    CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 0, nullptr, nullptr) == APSL_SUCCESS);
+    require_success(clFinish(queue.get()), "clFinish");
+    CHECK_FALSE(same_bytes(buffers.read_velocities(), CallerBuffers({&cloth, 1}, {}).read_velocities()));
+    apsl_limiter_destroy(limiter);
+    apsl_limiter_destroy(nullptr);
+    apsl_topology_destroy(nullptr);
+}
+
+TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
+    const apsl_limiter_options o = apsl_limiter_default_options();
+    const Options options;
+    CHECK(o.matrix == static_cast<int>(options.matrix));
+    CHECK(o.apply == static_cast<int>(options.apply));
+    CHECK(o.work_group_size == options.work_group_size);
+    CHECK(o.position_stride == options.position_stride);
+    CHECK(o.velocity_stride == options.velocity_stride);
+    CHECK(o.regularization_per_triangle == 0);
+    const apsl_limiter_parameters p = apsl_limiter_default_parameters();
+    const Parameters parameters;
+    CHECK(p.time_step == parameters.time_step);
+    CHECK(p.regularization == parameters.regularization);
+    CHECK(p.sub_steps == parameters.sub_steps);
+    CHECK(p.target_area_change == parameters.target_area_change);
+    CHECK(p.tolerance == parameters.tolerance);
+    CHECK(p.max_iterations == parameters.max_iterations);
+}

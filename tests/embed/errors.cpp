@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "embed/opencl_calls.hpp"
+#include "support/device_cloth.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+/// The action must throw Error with this code and one line that says `what`, and queue nothing.
+void check_error(ErrorCode code, const std::string& what, const std::function<void()>& action) {
+    CAPTURE(what);
+    const int commands = opencl_calls().commands;
+    bool thrown = false;
+    try {
+        action();
+    } catch (const Error& error) {
+        thrown = true;
+        const std::string message = error.what();
+        CHECK(error.code() == code);
+        CHECK_THAT(message, Catch::Contains(what));
+        CHECK(message.find('\n') == std::string::npos);
+    }
+    CHECK(thrown);
+    CHECK(opencl_calls().commands == commands);
+}
+
+void check_invalid(const std::string& what, const std::function<void()>& action) {
+    check_error(ErrorCode::invalid_argument, what, action);
+}
+
+const MovingCloth& cloth() {
+    static const MovingCloth made = moving_cloth(grid(5, 5, 1.0, 1.0, Diagonals::alternating), 1);
+    return made;
+}
+
+StrainLimiter limiter(const Options& options = {}) {
+    return {device().context, device().id, cloth().topology, options};
+}
+
+}  // namespace
+
+TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]") {
+    const auto options = [](const Options& o) { return [o] { limiter(o); }; };
+    check_invalid("position_stride is 2, expected at least 3", options({.position_stride = 2}));
+    check_invalid("velocity_stride is 0, expected at least 3", options({.velocity_stride = 0}));
+    check_invalid("work_group_size is 48, expected a power of two", options({.work_group_size = 48}));
+    check_invalid("matrix", options({.matrix = static_cast<Matrix>(7)}));
+    check_invalid("apply", options({.apply = static_cast<Apply>(-1)}));
+    check_error(ErrorCode::unsupported, "work_group_size is 1073741824", options({.work_group_size = 1u << 30}));
+
+    const std::vector<std::shared_ptr<const Topology>> none;
+    check_invalid("no cloths", [&] { StrainLimiter(device().context, device().id, none); });
+    check_invalid("null", [&] { StrainLimiter(device().context, device().id, std::shared_ptr<const Topology>()); });
+    check_error(ErrorCode::opencl, "CL_INVALID", [&] { StrainLimiter(nullptr, device().id, cloth().topology); });
+    check_error(ErrorCode::opencl, "CL_INVALID", [&] { StrainLimiter(device().context, nullptr, cloth().topology); });
+}
+
+TEST_CASE("enqueue refuses parameters out of range, and queues nothing", "[embed]") {
+    StrainLimiter made = limiter();
+    const CallerBuffers buffers({&cloth(), 1}, {});
+    const Owned<cl_command_queue> queue = in_order_queue();
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const auto parameters = [&](const Parameters& p) {
+        return [&, p] { clReleaseEvent(made.enqueue(queue.get(), buffers.views(), p)); };
+    };
+    check_invalid("regularization is 0.99, expected a finite number >= 1", parameters({.regularization = 0.99f}));
+    check_invalid("regularization is nan", parameters({.regularization = nan}));
+    check_invalid("time_step is 0", parameters({.time_step = 0.0f}));
+    check_invalid("time_step is nan", parameters({.time_step = nan}));
+    check_invalid("time_step is inf", parameters({.time_step = infinity}));
+    check_invalid("sub_steps is -1", parameters({.sub_steps = -1}));
+    check_invalid("target_area_change is -0.1", parameters({.target_area_change = -0.1f}));
+    check_invalid("target_area_change is nan", parameters({.target_area_change = nan}));
+    check_invalid("tolerance is 1", parameters({.tolerance = 1.0f}));
+    check_invalid("tolerance is nan", parameters({.tolerance = nan}));
+    check_invalid("max_iterations is 0", parameters({.max_iterations = 0}));
+
+    const std::vector<Parameters> two(2);
+    const std::vector<Parameters> none;
+    for (const auto& wrong_count : {two, none})
+        check_invalid(std::to_string(wrong_count.size()) + " parameters given for 1 cloths",
+                      [&] { clReleaseEvent(made.enqueue(queue.get(), buffers.views(), wrong_count)); });
+    CHECK(same_bytes(buffers.read_velocities(), CallerBuffers({&cloth(), 1}, {}).read_velocities()));
+}
+
+TEST_CASE("enqueue refuses buffers it cannot use, names them, and queues nothing", "[embed]") {
+    const Options options{.regularization_per_triangle = true};
+    StrainLimiter made = limiter(options);
+    const CallerBuffers buffers({&cloth(), 1}, options);
+    const Owned<cl_command_queue> queue = in_order_queue();
+    const std::pair<const char*, BufferView Buffers::*> fields[] = {{"positions", &Buffers::positions},
+                                                                    {"velocities", &Buffers::velocities},
+                                                                    {"inverse_masses", &Buffers::inverse_masses},
+                                                                    {"rest_areas", &Buffers::rest_areas},
+                                                                    {"regularization", &Buffers::regularization}};
+    for (const auto& [name, field] : fields) {
+        const auto with = [&, field = field](const std::function<void(BufferView&)>& change) {
+            Buffers views = buffers.views();
+            change(views.*field);
+            return [&made, &queue, views] { clReleaseEvent(made.enqueue(queue.get(), views, Parameters{})); };
+        };
+        const std::string buffer = std::string("buffers.") + name;
+        check_invalid(buffer + " is null", with([](BufferView& view) { view.buffer = nullptr; }));
+        check_invalid(buffer + " has offset 2", with([](BufferView& view) { view.offset = 2; }));
+        check_invalid(buffer + " holds", with([](BufferView& view) { view.offset = 4; }));  // one float too few
+        check_invalid(buffer, with([](BufferView& view) { view.offset = SIZE_MAX - 3; }));
+    }
+    StrainLimiter without = limiter();
+    check_invalid("regularization_per_triangle is off",
+                  [&] { clReleaseEvent(without.enqueue(queue.get(), buffers.views(), Parameters{})); });
+    check_error(ErrorCode::opencl, "CL_INVALID_COMMAND_QUEUE",
+                [&] { clReleaseEvent(made.enqueue(nullptr, buffers.views(), Parameters{})); });
+    CHECK(same_bytes(buffers.read_velocities(), CallerBuffers({&cloth(), 1}, options).read_velocities()));
+}
+
+TEST_CASE("read_stats refuses a wrong number of entries", "[embed]") {
+    const StrainLimiter made = limiter();
+    const Owned<cl_command_queue> queue = in_order_queue();
+    std::vector<Stats> stats(3);
+    check_invalid("3 statistics asked for", [&] { clReleaseEvent(made.read_stats(queue.get(), stats)); });
+}
+
+TEST_CASE("a limiter that refused a call still does the next one", "[embed]") {
+    StrainLimiter made = limiter();
+    const CallerBuffers buffers({&cloth(), 1}, {}), expected({&cloth(), 1}, {});
+    StrainLimiter fresh = limiter();
+    const Parameters parameters{.sub_steps = 2};
+    filter(fresh, expected, {&parameters, 1});
+    const Owned<cl_command_queue> queue = in_order_queue();
+    CHECK_THROWS_AS(made.enqueue(queue.get(), Buffers{}, parameters), Error);
+    CHECK_THROWS_AS(made.enqueue(queue.get(), buffers.views(), Parameters{.regularization = 0.0f}), Error);
+    filter(made, buffers, {&parameters, 1});
+    CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "support/meshes.hpp"
+#include "support/opencl.hpp"
+
+#include <apsl/strain_limiter.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace apsl::test {
+
+/// A cloth in the middle of a step, as a caller has it. Every number is a 32-bit float, held in double: the reference
+/// and the device are given the same.
+struct MovingCloth {
+    std::shared_ptr<const Topology> topology;
+    std::vector<double> positions;       ///< m, [3V]
+    std::vector<double> velocities;      ///< m/s, [3V]
+    std::vector<double> inverse_masses;  ///< 1/kg, [V]
+    std::vector<double> rest_areas;      ///< m², [T]
+    std::vector<double> regularization;  ///< α, [T]
+};
+
+/// The mesh at rest where it lies, wavy now and about to be stretched by some 15 %: unequal masses, two pins.
+MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed);
+
+/// The caller's buffers of one or more cloths, guarded, and the filter run on them.
+struct CallerBuffers {
+    /// `offset`: floats before the first element of every buffer. Strides and per-triangle α from the options.
+    CallerBuffers(std::span<const MovingCloth> cloths, const Options& options, std::size_t offset = 0);
+
+    Options options;
+    std::size_t offset;
+    std::size_t vertex_count;
+    DeviceArray<float> positions, velocities, inverse_masses, rest_areas, regularization;
+
+    Buffers views() const;
+    /// [3V] of all cloths, without stride and offset. Checks the guard bands of every buffer.
+    std::vector<float> read_velocities() const;
+};
+
+/// Queues one call on an in-order queue, waits, and returns the statistics, one entry a cloth.
+std::vector<Stats> filter(StrainLimiter& limiter, const CallerBuffers& buffers, std::span<const Parameters> parameters);
+
+}  // namespace apsl::test
