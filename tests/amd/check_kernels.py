@@ -112,7 +112,8 @@ def main():
     compiler = amd_compiler.version(arguments.clang)
     table = tuning_table.table(compiler, results, TARGETS) if not refused else ""
     if table and arguments.check_table and not tuning_table.is_current(arguments.check_table, table):
-        refused.append(f"{arguments.check_table.name}: table: out of date, write it anew with --write-table")
+        refused.append(f"{arguments.check_table.name}: table: out of date, write it anew with "
+                       "check_kernels.py --update-budget --write-table docs/tuning.md")
     for line in refused:
         print(f"refused: {line}", file=sys.stderr)
     if refused:
