@@ -28,24 +28,27 @@ int wrong_input(std::string what) {
 int parse_and_run(int argument_count, char** arguments) {
     CLI::App program{"Cloth scenes with area preserving strain limiting.", "apsl"};
     program.set_version_flag("--version", std::string("apsl ") + APSL_PROGRAM_VERSION);
-    program.require_subcommand(1);
+    program.require_subcommand(0, 1);
+    program.get_formatter()->column_width(22);
+    program.get_formatter()->label("SUBCOMMAND", "COMMAND");
+    program.get_formatter()->label("SUBCOMMANDS", "COMMANDS");
     program.footer(
         "apsl COMMAND --help lists a command's options.\n"
-        "Exit: 0 done, 1 the simulation broke down (the report says where), 2 wrong input.\n"
+        "Exit: 0 done, 1 the simulation broke down (see the report), 2 wrong input.\n"
         "Example: apsl run scenes/curtain.json --out out/curtain");
 
     RunOptions options;
     CLI::App* run = program.add_subcommand("run", "simulate a scene");
     run->add_option("SCENE", options.scene, "scene file, JSON")->required();
     const std::map<std::string, Backend> backends{{"opencl", Backend::opencl}, {"reference", Backend::reference}};
-    run->add_option("--backend", options.backend, "opencl (default) or reference: this processor, 64 bits")
+    run->add_option("--backend", options.backend, "opencl (default) or reference: this processor")
         ->transform(CLI::CheckedTransformer(backends).description(""));
-    run->add_option("--device", options.device, "a number from apsl devices; default the first GPU, else 0");
+    run->add_option("--device", options.device, "number from apsl devices; default the first GPU, else 0");
     run->add_option("--frames", options.frames, "instead of the scene's")
         ->check(CLI::Range(1, 2'000'000'000).description(""));
-    run->add_option("--out", options.out, "folder for frames (ParaView, Blender) and report.json");
+    run->add_option("--out", options.out, "folder for frames (ParaView, Blender) and report");
     run->add_option("--report", options.report, "report file, JSON");
-    run->add_option("--set", options.overrides, "path=value: change a value of the scene, may be repeated")
+    run->add_option("--set", options.overrides, "path=value: change a value of the scene; repeatable")
         ->take_all()
         ->allow_extra_args(false);
     run->add_flag("--profile", options.profile, "time each kernel on the device");
@@ -54,7 +57,7 @@ int parse_and_run(int argument_count, char** arguments) {
 
     CLI::App* validate = program.add_subcommand("validate", "check a scene and its mesh, simulate nothing");
     validate->add_option("SCENE", options.scene, "scene file, JSON")->required();
-    validate->add_option("--set", options.overrides, "path=value: change a value of the scene, may be repeated")
+    validate->add_option("--set", options.overrides, "path=value: change a value of the scene; repeatable")
         ->take_all()
         ->allow_extra_args(false);
 
@@ -65,6 +68,8 @@ int parse_and_run(int argument_count, char** arguments) {
     } catch (const CLI::ParseError& error) {
         return wrong_input(std::string(error.what()) + " (see apsl --help)");
     }
+    if (program.get_subcommands().empty())
+        return wrong_input("no command, expected run, devices or validate (see apsl --help)");
     if (run->parsed()) return run_command(options);
     if (validate->parsed()) return validate_command(options.scene, options.overrides);
     return devices_command();

@@ -6,6 +6,7 @@
 #include "run/resolve_pins.hpp"
 
 #include <apsl/error.hpp>
+#include <apsl/reference.hpp>
 
 #include <numeric>
 
@@ -25,31 +26,31 @@ Mesh mesh_of(const MeshFile& source) {
 // A triangle this much smaller than the mean is nearly always a flaw of the mesh, and its area change is mostly noise.
 constexpr double kSmallRestArea = 1e-6;
 
-void check_rest_areas(const ClothState& cloth, const std::string& name, std::vector<std::string>& warnings) {
-    const double mean =
-        std::reduce(cloth.rest_areas.begin(), cloth.rest_areas.end()) / static_cast<double>(cloth.rest_areas.size());
+void check_rest_areas(const std::vector<double>& rest_areas, const std::string& name,
+                      std::vector<std::string>& warnings) {
+    const double mean = std::reduce(rest_areas.begin(), rest_areas.end()) / static_cast<double>(rest_areas.size());
     std::size_t small = 0;
-    for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a) {
-        if (!(cloth.rest_areas[a] > 0.0)) {
+    for (std::size_t a = 0; a < rest_areas.size(); ++a) {
+        if (!(rest_areas[a] > 0.0)) {
             throw InputError(name + ": triangle " + std::to_string(a) + " has rest area 0, expected an area > 0");
         }
-        if (cloth.rest_areas[a] < kSmallRestArea * mean) ++small;
+        if (rest_areas[a] < kSmallRestArea * mean) ++small;
     }
     if (small > 0) {
-        warnings.push_back(name + ": " + std::to_string(small) +
-                           " triangles have less than a millionth of the mean rest area; collapse them in the mesh");
+        warnings.push_back(name + ": triangles with less than a millionth of the mean rest area: " +
+                           std::to_string(small) + "; collapse them in the mesh");
     }
 }
 
 void note_topology(const Topology& topology, const std::string& name, std::vector<std::string>& warnings) {
     if (topology.isolated_vertex_count() > 0) {
-        warnings.push_back(name + ": " + std::to_string(topology.isolated_vertex_count()) +
-                           " vertices are in no triangle and stay where they are; delete them from the mesh");
+        warnings.push_back(name + ": vertices in no triangle: " + std::to_string(topology.isolated_vertex_count()) +
+                           "; they stay where they are, delete them from the mesh");
     }
     if (topology.non_manifold_edge_count() > 0) {
-        warnings.push_back(name + ": " + std::to_string(topology.non_manifold_edge_count()) +
-                           " edges have more than two triangles; areas are kept there too, but if layers should move "
-                           "apart split the mesh along those edges");
+        warnings.push_back(
+            name + ": edges with more than two triangles: " + std::to_string(topology.non_manifold_edge_count()) +
+            "; areas are kept there too, but layers that should move apart need the mesh split there");
     }
 }
 
@@ -62,9 +63,9 @@ SceneCloth make_scene_cloth(const Scene& scene) {
     try {
         const Mesh mesh = std::visit([](const auto& source) { return mesh_of(source); }, scene.mesh);
         const auto topology = Topology::build(mesh.triangles, mesh.vertex_count());
+        check_rest_areas(reference::areas<double>(*topology, mesh.positions), name, cloth.warnings);
         cloth.pins = resolve_pins(scene, mesh);
         cloth.state = make_cloth_state(topology, mesh.positions, scene.density, pinned_vertices(cloth.pins));
-        check_rest_areas(cloth.state, name, cloth.warnings);
         note_topology(*topology, name, cloth.warnings);
     } catch (const Error& error) {
         throw InputError(name + ": " + error.what());

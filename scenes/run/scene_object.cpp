@@ -129,6 +129,7 @@ void SceneObject::refuse_other_keys() const {
 }
 
 std::string SceneObject::one_of(const std::vector<std::string>& names) {
+    if (names.empty()) return "no key";
     std::string text = names.size() == 1 ? "" : "one of ";
     for (std::size_t k = 0; k < names.size(); ++k) text += (k == 0 ? "" : ", ") + names[k];
     return text;

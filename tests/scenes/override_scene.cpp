@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "run/override_scene.hpp"
+
+#include "scenes/sample_files.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+using apsl::scenes::override_scene;
+using apsl::test::input_error_of;
+
+namespace {
+
+nlohmann::json changed(const std::string& before, const std::string& assignment) {
+    nlohmann::json document = nlohmann::json::parse(before);
+    override_scene(document, assignment);
+    return document;
+}
+
+}  // namespace
+
+TEST_CASE("--set changes, adds and takes out values") {
+    const auto [before, assignment, after] = GENERATE(table<std::string, std::string, std::string>({
+        {R"({"a": {"b": 1, "c": 2}})", "a.b=1.5", R"({"a": {"b": 1.5, "c": 2}})"},
+        {R"({})", "a.b.c=[1, 2]", R"({"a": {"b": {"c": [1, 2]}}})"},
+        {R"({"a": 1})", "b=uniform", R"({"a": 1, "b": "uniform"})"},
+        {R"({"a": 1})", "b=\"1\"", R"({"a": 1, "b": "1"})"},
+        {R"({"a": 1, "b": 2})", "b=null", R"({"a": 1})"},
+        {R"({"a": [{"b": 1}]})", "a[0].b=2", R"({"a": [{"b": 2}]})"},
+        {R"({"a": [{"b": 1}]})", "a.0.b=2", R"({"a": [{"b": 2}]})"},
+        {R"({"a": [1]})", "a[1]={\"b\": 2}", R"({"a": [1, {"b": 2}]})"},
+        {R"({"a": [1]})", "a[1].b=2", R"({"a": [1, {"b": 2}]})"},
+        {R"({"a": [1, 2]})", "a[0]=null", R"({"a": [2]})"},
+        {R"({"a": 1})", "b=x=y", R"({"a": 1, "b": "x=y"})"},
+    }));
+    CAPTURE(before, assignment);
+    CHECK(changed(before, assignment) == nlohmann::json::parse(after));
+}
+
+TEST_CASE("--set of one kind of mesh or integrator puts it in place of the others") {
+    CHECK(changed(R"({"mesh": {"grid": {}}})", "mesh.file=/tmp/x.obj") ==
+          nlohmann::json::parse(R"({"mesh": {"file": "/tmp/x.obj"}})"));
+    CHECK(changed(R"({"mesh": {"file": "x.obj", "height": 1}})", "mesh.grid.jitter=0.1") ==
+          nlohmann::json::parse(R"({"mesh": {"grid": {"jitter": 0.1}}})"));
+    CHECK(changed(R"({"mesh": {"file": "x.obj"}})", "mesh.height=2") ==
+          nlohmann::json::parse(R"({"mesh": {"file": "x.obj", "height": 2}})"));
+    CHECK(changed(R"({"integrator": {"implicit_springs": {"damping": 1}}})", "integrator.stand_alone={}") ==
+          nlohmann::json::parse(R"({"integrator": {"stand_alone": {}}})"));
+}
+
+TEST_CASE("--set mesh.file is relative to the working directory") {
+    CHECK(changed("{}", "mesh.file=meshes/../x.obj")["mesh"]["file"] ==
+          (std::filesystem::current_path() / "x.obj").string());
+}
+
+TEST_CASE("--set that leads nowhere says where it stopped") {
+    const auto [assignment, message] = GENERATE(table<std::string, std::string>({
+        {"a", "--set a: expected path=value"},
+        {"=1", "--set =1: expected path=value"},
+        {"a..b=1", "--set a..b=1: expected path=value"},
+        {"a.b=1", "--set a.b=1: there is no \"b\" in 3"},
+        {"list[5]=1", "--set list[5]=1: there is no \"5\" in [1]"},
+        {"list.x=1", "--set list.x=1: there is no \"x\" in [1]"},
+    }));
+    nlohmann::json document = nlohmann::json::parse(R"({"a": 3, "list": [1]})");
+    CHECK_THAT(input_error_of([&, given = assignment] { override_scene(document, given); }),
+               Catch::StartsWith(message));
+}

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "run/parse_scene.hpp"
+
+#include "scenes/sample_files.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace apsl;
+using namespace apsl::scenes;
+using apsl::test::input_error_of;
+using apsl::test::TemporaryFolder;
+
+namespace {
+
+Scene parse(const std::string& text) {
+    return parse_scene(nlohmann::json::parse(text), "folder/scene.json");
+}
+
+std::string error_of(const std::string& text) {
+    return input_error_of([&] { parse(text); });
+}
+
+}  // namespace
+
+TEST_CASE("every key but mesh has a default, and what is not named is not there") {
+    const Scene scene = parse(R"({"mesh": {"grid": {}}})");
+    const GridMesh& grid = std::get<GridMesh>(scene.mesh);
+    CHECK(grid.vertices == std::array<std::uint32_t, 2>{65, 65});
+    CHECK(grid.size == std::array<double, 2>{1.0, 1.0});
+    CHECK(grid.diagonals == Diagonals::alternating);
+    CHECK(grid.jitter == 0.0);
+    CHECK(grid.plane == GridPlane::horizontal);
+    CHECK(scene.density == 0.2);
+    CHECK(scene.pins.empty());
+    CHECK(scene.gravity == std::array<double, 3>{0.0, -9.81, 0.0});
+    CHECK(scene.time_step == 1.0 / 60.0);
+    CHECK(scene.steps_per_frame == 1);
+    CHECK(scene.frames == 180);
+    CHECK(std::holds_alternative<NoIntegrator>(scene.integrator));
+    CHECK_FALSE(scene.strain_limiting.has_value());
+    CHECK(scene.colliders.empty());
+}
+
+TEST_CASE("a stage that is named without values takes the defaults of the stage") {
+    const Scene scene = parse(R"({"mesh": {"tube": {}}, "time_step": 0.01, "integrator": {"implicit_springs": {}},
+        "strain_limiting": {}, "colliders": [{"sphere": {}}, {"plane": {}}, {"capsule": {}}]})");
+    const auto& springs = std::get<ImplicitSpringsIntegrator>(scene.integrator);
+    CHECK(springs.stretch_stiffness == 20.0);
+    CHECK(springs.bend_stiffness == 0.01);
+    CHECK(springs.damping == 0.5);
+    REQUIRE(scene.strain_limiting.has_value());
+    const Parameters defaults;
+    CHECK(scene.strain_limiting->matrix == Matrix::consistent);
+    CHECK(scene.strain_limiting->apply == Apply::matrix_free);
+    CHECK(scene.strain_limiting->parameters.time_step == 0.01f);
+    CHECK(scene.strain_limiting->parameters.regularization == defaults.regularization);
+    CHECK(scene.strain_limiting->parameters.sub_steps == defaults.sub_steps);
+    CHECK(scene.strain_limiting->parameters.target_area_change == defaults.target_area_change);
+    CHECK(scene.strain_limiting->parameters.tolerance == defaults.tolerance);
+    CHECK(scene.strain_limiting->parameters.max_iterations == defaults.max_iterations);
+    CHECK(scene.strain_limiting->regularization.empty());
+    CHECK(scene.colliders.size() == 3);
+}
+
+TEST_CASE("every value is taken from where it stands") {
+    const Scene scene = parse(R"({
+        "mesh": {"tube": {"radius": [0.1, 0.4], "height": 0.5, "segments": [24, 12], "diagonals": "random", "jitter": 0.3}},
+        "density": 0.3, "gravity": [1, 2, 3], "time_step": 0.01, "steps_per_frame": 2, "frames": 7,
+        "pins": [{"vertices": [3, 1]}, {"corners": ["min_x_max_y"]},
+                 {"box": {"min": [0, 1, 2]}, "motion": {"rotate": {"axis": [0, 0, 2], "degrees_per_second": 90,
+                  "center": [1, 1, 1]}, "start": 0.5, "stop": 2}},
+                 {"vertices": [0], "motion": {"translate": {"velocity": [0, 1, 0]}}}],
+        "integrator": {"stand_alone": {"bend_stiffness": 50, "damping": 0}},
+        "strain_limiting": {"matrix": "printed", "apply": "assembled_csr", "regularization": 2.5, "sub_steps": 3,
+                            "target_area_change": 0.01, "tolerance": 0.001, "max_iterations": 9},
+        "colliders": [{"sphere": {"center": [0, 1, 0], "radius": 0.2, "friction": 0.5, "thickness": 0.01}},
+                      {"plane": {"point": [0, -1, 0], "normal": [0, 2, 0]}},
+                      {"capsule": {"a": [0, 0, 0], "b": [0, 1, 0], "radius": 0.05}}]})");
+    const TubeMesh& tube = std::get<TubeMesh>(scene.mesh);
+    CHECK(tube.radius == std::array<double, 2>{0.1, 0.4});
+    CHECK(tube.height == 0.5);
+    CHECK(tube.segments == std::array<std::uint32_t, 2>{24, 12});
+    CHECK(tube.diagonals == Diagonals::random);
+    CHECK(tube.jitter == 0.3);
+    CHECK(scene.density == 0.3);
+    CHECK(scene.gravity == std::array<double, 3>{1, 2, 3});
+    CHECK(scene.steps_per_frame == 2);
+    CHECK(scene.frames == 7);
+
+    REQUIRE(scene.pins.size() == 4);
+    CHECK(std::get<PinnedVertices>(scene.pins[0].selection).vertices == std::vector<std::uint32_t>{3, 1});
+    CHECK(std::holds_alternative<PinHeld>(scene.pins[0].motion.path));
+    CHECK(std::get<PinnedCorners>(scene.pins[1].selection).corners == std::vector<std::string>{"min_x_max_y"});
+    const PinnedBox& box = std::get<PinnedBox>(scene.pins[2].selection);
+    CHECK(box.min == std::array<double, 3>{0, 1, 2});
+    CHECK(std::isinf(box.max[0]));
+    const PinRotation& rotation = std::get<PinRotation>(scene.pins[2].motion.path);
+    CHECK(rotation.axis == std::array<double, 3>{0, 0, 2});
+    CHECK(rotation.degrees_per_second == 90);
+    CHECK(rotation.center == std::array<double, 3>{1, 1, 1});
+    CHECK(scene.pins[2].motion.start == 0.5);
+    CHECK(scene.pins[2].motion.stop == 2.0);
+    CHECK(std::get<PinTranslation>(scene.pins[3].motion.path).velocity == std::array<double, 3>{0, 1, 0});
+
+    const auto& stand_alone = std::get<StandAloneIntegrator>(scene.integrator);
+    CHECK(stand_alone.bend_stiffness == 50);
+    CHECK(stand_alone.damping == 0);
+    const StrainLimiting& limiting = scene.strain_limiting.value();
+    CHECK(limiting.matrix == Matrix::printed);
+    CHECK(limiting.apply == Apply::assembled_csr);
+    CHECK(limiting.parameters.regularization == 2.5f);
+    CHECK(limiting.parameters.sub_steps == 3);
+    CHECK(limiting.parameters.target_area_change == 0.01f);
+    CHECK(limiting.parameters.tolerance == 0.001f);
+    CHECK(limiting.parameters.max_iterations == 9);
+
+    const Sphere& sphere = std::get<Sphere>(scene.colliders[0]);
+    CHECK(sphere.center == std::array<double, 3>{0, 1, 0});
+    CHECK(sphere.radius == 0.2);
+    CHECK(sphere.contact.friction == 0.5);
+    CHECK(sphere.contact.thickness == 0.01);
+    CHECK(std::get<Plane>(scene.colliders[1]).normal == std::array<double, 3>{0, 2, 0});
+    CHECK(std::get<Capsule>(scene.colliders[2]).b == std::array<double, 3>{0, 1, 0});
+}
+
+TEST_CASE("a mesh file is looked for beside the scene") {
+    const MeshFile absolute = std::get<MeshFile>(parse(R"({"mesh": {"file": "/a/b.obj"}})").mesh);
+    CHECK(absolute.file == "/a/b.obj");
+    CHECK_FALSE(absolute.height.has_value());
+    const MeshFile relative = std::get<MeshFile>(parse(R"({"mesh": {"file": "b.obj", "height": 2}})").mesh);
+    CHECK(relative.file == "folder/b.obj");
+    CHECK(relative.height == 2.0);
+}
+
+TEST_CASE("one regularization per triangle") {
+    const Scene scene = parse(R"({"mesh": {"grid": {}}, "strain_limiting": {"regularization": [1, 2.5]}})");
+    CHECK(scene.strain_limiting->regularization == std::vector<float>{1.0f, 2.5f});
+}
+
+TEST_CASE("what is wrong is named by its path, with what was expected") {
+    const auto [rest, message] = GENERATE(table<std::string, std::string>({
+        {R"("density": -1)", "density: expected a number > 0, got -1"},
+        {R"("density": "heavy")", "density: expected a number > 0, got \"heavy\""},
+        {R"("density": null)", "density: expected a number > 0, got null"},
+        {R"("time_step": 0)", "time_step: expected a number > 0, got 0"},
+        {R"("frames": 0)", "frames: expected a whole number from 1 to 2147483647, got 0"},
+        {R"("frames": 1.5)", "frames: expected a whole number from 1 to 2147483647, got 1.5"},
+        {R"("steps_per_frame": 0)", "steps_per_frame: expected a whole number from 1"},
+        {R"("gravity": [0, 1])", "gravity: expected three numbers, got [0,1]"},
+        {R"("gravity": [0, 1, "x"])", "gravity[2]: expected a number, got \"x\""},
+        {R"("color": 1)",
+         "color: unknown key, expected one of mesh, density, pins, gravity, time_step, steps_per_frame, frames, "
+         "integrator, strain_limiting, colliders"},
+        {R"("strain_limiting": {"alpha": 2})",
+         "strain_limiting.alpha: unknown key, expected one of matrix, apply, regularization, sub_steps, "
+         "target_area_change, tolerance, max_iterations"},
+        {R"("strain_limiting": {"regularization": 0.99})",
+         "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
+        {R"("strain_limiting": {"regularization": [1, 0.5]})",
+         "strain_limiting.regularization[1]: expected a number ≥ 1, got 0.5"},
+        {R"("strain_limiting": {"tolerance": 1})", "strain_limiting.tolerance: expected a number ≥ 0 and < 1, got 1"},
+        {R"("strain_limiting": {"sub_steps": -1})", "strain_limiting.sub_steps: expected a whole number from 0"},
+        {R"("strain_limiting": {"max_iterations": 0})",
+         "strain_limiting.max_iterations: expected a whole number from 1"},
+        {R"("strain_limiting": {"target_area_change": -0.1})",
+         "strain_limiting.target_area_change: expected a number ≥ 0, got -0.1"},
+        {R"("strain_limiting": {"matrix": "exact"})",
+         "strain_limiting.matrix: expected one of consistent, printed, got \"exact\""},
+        {R"("strain_limiting": [])", "strain_limiting: expected an object, got []"},
+        {R"("integrator": {})",
+         "integrator: is missing what it is, expected one of implicit_springs, stand_alone, none"},
+        {R"("integrator": {"none": {}, "stand_alone": {}})", "integrator: has both stand_alone and none"},
+        {R"("integrator": {"implicit_springs": {"stretch_stiffness": -1}})",
+         "integrator.implicit_springs.stretch_stiffness: expected a number ≥ 0, got -1"},
+        {R"("integrator": {"stand_alone": {"stretch_stiffness": 1}})",
+         "integrator.stand_alone.stretch_stiffness: unknown key, expected one of bend_stiffness, damping"},
+        {R"("pins": {})", "pins: expected an array, got {}"},
+        {R"("pins": [{"vertices": [-1]}])", "pins[0].vertices[0]: expected a whole number from 0"},
+        {R"("pins": [{"box": {"low": 1}}])", "pins[0].box.low: unknown key, expected one of min, max"},
+        {R"("pins": [{"vertices": [0], "motion": {"rotate": {"axis": [0, 0, 0]}}}])",
+         "pins[0].motion.rotate.axis: expected an axis of any length but 0"},
+        {R"("pins": [{"vertices": [0], "motion": {"rotate": {}, "start": 2, "stop": 1}}])",
+         "pins[0].motion.stop: expected a number ≥ 2, got 1"},
+        {R"("colliders": [{"cube": {}}])", "colliders[0].cube: unknown key, expected one of sphere, plane, capsule"},
+        {R"("colliders": [{"sphere": {"radius": 0}}])", "colliders[0].sphere.radius: expected a number > 0, got 0"},
+    }));
+    CAPTURE(rest);
+    CHECK_THAT(error_of(R"({"mesh": {"grid": {}}, )" + rest + "}"), Catch::StartsWith("folder/scene.json: " + message));
+}
+
+TEST_CASE("what is wrong with a mesh is named by its path") {
+    const auto [mesh, message] = GENERATE(table<std::string, std::string>({
+        {R"({})", "mesh: is missing what it is, expected one of grid, tube, file"},
+        {R"({"grid": {}, "file": "x.obj"})", "mesh: has both grid and file"},
+        {R"({"grid": {}, "height": 1})", "mesh.height: only a mesh from a file is scaled to a height"},
+        {R"({"grid": {"vertices": [1, 5]}})", "mesh.grid.vertices[0]: expected a whole number from 2"},
+        {R"({"grid": {"vertices": [5]}})", "mesh.grid.vertices: expected two whole numbers, got [5]"},
+        {R"({"grid": {"vertices": [1000000, 1000000]}})", "mesh.grid: more than"},
+        {R"({"grid": {"size": [1, 0]}})", "mesh.grid.size[1]: expected a number > 0, got 0"},
+        {R"({"grid": {"jitter": 1}})", "mesh.grid.jitter: expected a number ≥ 0 and < 1, got 1"},
+        {R"({"grid": {"diagonals": "zigzag"}})",
+         "mesh.grid.diagonals: expected one of uniform, alternating, random, got \"zigzag\""},
+        {R"({"tube": {"segments": [2, 4]}})", "mesh.tube.segments[0]: expected a whole number from 3"},
+        {R"({"tube": {"radius": [0.1, -0.1]}})", "mesh.tube.radius[1]: expected a number > 0"},
+        {R"({"file": 3})", "mesh.file: expected a text, got 3"},
+        {R"({"file": "x.obj", "height": 0})", "mesh.height: expected a number > 0, got 0"},
+    }));
+    CAPTURE(mesh);
+    CHECK_THAT(error_of(R"({"mesh": )" + mesh + "}"), Catch::StartsWith("folder/scene.json: " + message));
+}
+
+TEST_CASE("a scene without a mesh, and one that is no object") {
+    CHECK(error_of("{}") == "folder/scene.json: mesh is missing, expected one of grid, tube, file in it");
+    CHECK(error_of("[]") == "folder/scene.json: expected an object, got []");
+}
+
+TEST_CASE("a scene file that is missing or no JSON") {
+    const TemporaryFolder folder;
+    const std::string missing = (folder.path() / "missing.json").string();
+    CHECK(input_error_of([&] { read_scene(missing); }) == missing + ": no such scene file");
+    const std::string broken = folder.write("broken.json", "{\n \"mesh\": {\"grid\": {}},\n \"frames\": }\n");
+    CHECK_THAT(input_error_of([&] { read_scene(broken); }),
+               Catch::StartsWith(broken + ": not valid JSON: parse error at line 3, column"));
+    const std::string huge = folder.write("huge.json", R"({"mesh": {"grid": {}}, "density": 1e999})");
+    CHECK_THAT(input_error_of([&] { read_scene(huge); }), Catch::StartsWith(huge + ": not valid JSON: "));
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Wrong input of every kind: exit code 2, and one line that says what and where.
+#include "scenes/program_run.hpp"
+#include "scenes/sample_files.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+using namespace apsl::test;
+
+namespace {
+
+void check_refused(const std::string& arguments, const std::string& message, const std::string& environment = "") {
+    CAPTURE(arguments);
+    const ProgramRun run = run_apsl(arguments, environment);
+    CHECK(run.exit_code == 2);
+    CHECK(run.output.empty());
+    CHECK(std::count(run.errors.begin(), run.errors.end(), '\n') == 1);
+    CHECK_THAT(run.errors, Catch::StartsWith("error: "));
+    CHECK_THAT(run.errors, Catch::Contains(message));
+}
+
+const std::string kGrid = R"({"mesh": {"grid": {"vertices": [5, 5]}}, "frames": 1, )";
+const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+}  // namespace
+
+TEST_CASE("wrong usage is refused in one line") {
+    check_refused("", "no command, expected run, devices or validate");
+    check_refused("fly", "fly");
+    check_refused("run", "SCENE is required");
+    check_refused("run " + scene_path("curtain.json") + " --backend cuda", "--backend");
+    check_refused("run " + scene_path("curtain.json") + " --frames 0", "--frames");
+    check_refused("run " + scene_path("curtain.json") + " --frames many", "--frames");
+    check_refused("run " + scene_path("curtain.json") + " --colour", "--colour");
+    check_refused("run " + scene_path("curtain.json") + " --set frames", "--set frames: expected path=value");
+    check_refused("run " + scene_path("curtain.json") + " --set strain_limiting.alpha=1.1",
+                  "strain_limiting.alpha: unknown key");
+}
+
+TEST_CASE("wrong scenes are refused in one line, by run and by validate") {
+    const TemporaryFolder folder;
+    const std::string command = GENERATE("run ", "validate ");
+    check_refused(command + (folder.path() / "missing.json").string(), "missing.json: no such scene file");
+    check_refused(command + folder.write("broken.json", "{\n\"mesh\": \n}"),
+                  "broken.json: not valid JSON: parse error at line 3");
+    check_refused(command + folder.write("key.json", kGrid + R"("wind": 1})"), "key.json: wind: unknown key");
+    check_refused(command + folder.write("density.json", kGrid + R"("density": -0.2})"),
+                  "density.json: density: expected a number > 0, got -0.2");
+    check_refused(command + folder.write("alpha.json", kGrid + R"("strain_limiting": {"regularization": 0.9}})"),
+                  "alpha.json: strain_limiting.regularization: expected a number ≥ 1, got 0.9");
+    check_refused(command + folder.write("pin.json", kGrid + R"("pins": [{"vertices": [25]}]})"),
+                  "pin.json: pins[0].vertices[0]: vertex 25 is out of range");
+}
+
+TEST_CASE("wrong meshes are refused in one line") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("mesh.json", R"({"mesh": {"file": "mesh.obj"}, "frames": 1})");
+    check_refused("run " + scene, "mesh.obj: no such mesh file");
+    folder.write("mesh.obj", "");
+    check_refused("run " + scene, "mesh.obj: has no vertices");
+    folder.write("mesh.obj", kCorners + "v nan 0 0\nf 1 2 3\n");
+    check_refused("run " + scene, "mesh.obj:4: expected three finite coordinates");
+    folder.write("mesh.obj", kCorners + "f 1 2 9\n");
+    check_refused("run " + scene, "mesh.obj: face 0: vertex 8 is out of range");
+    folder.write("mesh.obj", kCorners + "v 2 0 0\nf 1 2 4\n");
+    check_refused("run " + scene, "mesh.obj: triangle 0 has rest area 0");
+    const std::string ply = folder.write("nan.ply", ply_text(3, 1, "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"));
+    check_refused("run " + scene + " --set mesh.file=" + ply, "nan.ply: vertex 1: expected three finite coordinates");
+}
+
+TEST_CASE("regularizations that do not fit the mesh are refused in one line") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("map.json", kGrid + R"("strain_limiting": {"regularization": [1.1, 1.2]}})");
+    check_refused("run " + scene + " --backend reference",
+                  "strain_limiting.regularization: expected one number or one for each of 32 triangles, got 2");
+}
+
+TEST_CASE("a device that is not there is refused in one line") {
+    const std::string curtain = "run --frames 1 " + scene_path("curtain.json");
+    check_refused(curtain + " --device 99", "--device 99: no such device, expected 0 to");
+    check_refused(curtain + " --device -1", "--device -1: no such device");
+}
+
+TEST_CASE("no OpenCL platform at all is refused in one line that says what to install") {
+    const TemporaryFolder no_drivers;
+    const std::string environment = "OCL_ICD_VENDORS=" + no_drivers.path().string();
+    check_refused("run --frames 1 " + scene_path("curtain.json"), "install pocl-opencl-icd", environment);
+    check_refused("devices", "install pocl-opencl-icd", environment);
+}
+
+TEST_CASE("places that cannot be written to are refused in one line, before anything is simulated") {
+    const TemporaryFolder folder;
+    const std::string file = folder.write("file", "");
+    const std::string curtain = "run --frames 1 " + scene_path("curtain.json");
+    check_refused(curtain + " --out " + file + "/out", "file/out: cannot be made a folder");
+    check_refused(curtain + " --out " + file, "file: cannot be made a folder");
+    check_refused(curtain + " --report " + file + "/report.json", "report.json: no such folder");
+    check_refused(curtain + " --report " + folder.path().string(), "is a folder, expected a file");
+    check_refused(curtain + " --report " + (folder.path() / "none/report.json").string(), "no such folder");
+    CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+}

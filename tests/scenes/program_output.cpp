@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: MIT
+// What a run leaves behind: report, frames, exit code.
+#include "scenes/program_run.hpp"
+#include "scenes/sample_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+using namespace apsl::test;
+
+namespace {
+
+nlohmann::json read_json(const std::filesystem::path& file) {
+    return nlohmann::json::parse(read_bytes(file));
+}
+
+std::set<std::string> keys(const nlohmann::json& object) {
+    std::set<std::string> names;
+    for (const auto& [key, unused] : object.items()) names.insert(key);
+    return names;
+}
+
+bool contains(const std::set<std::string>& all, const std::set<std::string>& some) {
+    return std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
+// Everything but times.
+nlohmann::json without_seconds(nlohmann::json report) {
+    const auto take_out = [](nlohmann::json& object) {
+        for (const std::string& key : keys(object)) {
+            if (key.find("seconds") != std::string::npos) object.erase(key);
+        }
+    };
+    for (nlohmann::json& frame : report["frames"]) take_out(frame);
+    take_out(report["summary"]);
+    return report;
+}
+
+std::set<std::string> file_names(const std::filesystem::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.insert(entry.path().filename().string());
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("a run leaves a whole report and frames that belong to it") {
+    const TemporaryFolder folder;
+    const std::filesystem::path out = folder.path() / "new" / "out";
+    const std::filesystem::path report_file = folder.path() / "report.json";
+    const ProgramRun run = run_apsl("run " + scene_path("curtain.json") + " --frames 3 --out " + out.string() +
+                                    " --report " + report_file.string());
+    CAPTURE(run.errors);
+    REQUIRE(run.exit_code == 0);
+    CHECK_THAT(run.output, Catch::Contains("greatest area change"));
+    CHECK_THAT(run.output, Catch::Contains("RMS area change"));
+    CHECK_THAT(run.output, Catch::Contains("strain limiting"));
+    CHECK(file_names(out) == std::set<std::string>{"cloth.obj", "cloth.pc2", "cloth.pvd", "frame_0000.vtp",
+                                                   "frame_0001.vtp", "frame_0002.vtp", "report.json"});
+    CHECK(read_bytes(out / "report.json") == read_bytes(report_file));
+
+    const nlohmann::json report = read_json(report_file);
+    CHECK(contains(keys(report), {"scene", "backend", "device", "vertices", "triangles", "stages", "device_bytes",
+                                  "frames", "summary", "kernels"}));
+    CHECK(report["scene"] == scene_path("curtain.json"));
+    CHECK(report["backend"] == "opencl");
+    CHECK(report["vertices"] == 4225);
+    CHECK(report["triangles"] == 8192);
+    CHECK(report["stages"] == nlohmann::json::array({"implicit_springs", "strain_limiting"}));
+    // At least the caller's own buffers: two vectors a vertex, a mass a vertex, an area a triangle.
+    CHECK(report["device_bytes"] > 4 * (7 * 4225 + 8192));
+    REQUIRE(report["frames"].size() == 3);
+    double greatest = 0.0;
+    double sum = 0.0;
+    int iterations = 0;
+    for (int k = 0; k < 3; ++k) {
+        const nlohmann::json& frame = report["frames"][k];
+        CHECK(contains(keys(frame),
+                       {"frame", "max_area_change", "rms_area_change", "max_edge_stretch", "min_edge_stretch",
+                        "sub_steps", "cg_iterations", "filter_seconds", "step_seconds", "status"}));
+        CHECK(frame["frame"] == k);
+        CHECK(frame["sub_steps"] == 10);
+        CHECK(frame["status"] == "ok");
+        CHECK(frame["max_area_change"] >= frame["rms_area_change"]);
+        CHECK(frame["max_area_change"] > 0.0);
+        CHECK(frame["step_seconds"] > frame["filter_seconds"]);
+        greatest = std::max(greatest, frame["max_area_change"].get<double>());
+        sum += frame["max_area_change"].get<double>();
+        iterations += frame["cg_iterations"].get<int>();
+    }
+    const nlohmann::json& summary = report["summary"];
+    CHECK(summary["max_area_change"] == greatest);
+    CHECK(summary["mean_max_area_change"].get<double>() == Approx(sum / 3.0));
+    CHECK(summary["cg_iterations_per_solve"].get<double>() == Approx(iterations / 30.0));
+    CHECK(summary["status"] == "ok");
+    CHECK(contains(keys(summary),
+                   {"rms_area_change", "max_edge_stretch", "filter_seconds_per_frame", "step_seconds_per_frame"}));
+}
+
+TEST_CASE("the point cache holds every vertex of every frame, and the OBJ the cloth at rest") {
+    const TemporaryFolder folder;
+    REQUIRE(run_apsl("run " + scene_path("curtain_unfiltered.json") +
+                     " --set mesh.grid.vertices=[5,7] --set pins=[] --frames 4 --out " + folder.path().string())
+                .exit_code == 0);
+    const std::string cache = read_bytes(folder.path() / "cloth.pc2");
+    REQUIRE(cache.size() == 32 + 4 * 35 * 3 * sizeof(float));
+    CHECK(cache.substr(0, 12) == std::string("POINTCACHE2\0", 12));
+    std::array<std::int32_t, 5> header{};
+    std::memcpy(header.data(), cache.data() + 12, 20);
+    CHECK(header[0] == 1);
+    CHECK(header[1] == 35);
+    CHECK(header[4] == 4);
+    // An unpinned cloth falls freely: with backward Euler and damping d, v ← (v − g Δt) / (1 + d Δt).
+    double velocity = 0.0;
+    double height = 0.0;
+    for (int frame = 0; frame < 4; ++frame) {
+        velocity = (velocity - 9.81 * 0.016666667) / (1.0 + 0.5 * 0.016666667);
+        height += velocity * 0.016666667;
+        float y = 0.0f;
+        std::memcpy(&y, cache.data() + 32 + (static_cast<std::size_t>(frame) * 105 + 3 * 34 + 1) * sizeof y, sizeof y);
+        CHECK(y == Approx(height));
+    }
+    const std::string obj = read_bytes(folder.path() / "cloth.obj");
+    CHECK(obj.starts_with("v -0.5 0 -0.5\nv -0.25 0 -0.5\n"));
+    CHECK(std::count(obj.begin(), obj.end(), 'v') == 35);
+    CHECK(std::count(obj.begin(), obj.end(), 'f') == 48);
+}
+
+TEST_CASE("two runs leave the same bytes, times apart") {
+    const TemporaryFolder folder;
+    const std::string backend = GENERATE("opencl", "reference");
+    for (const std::string name : {"first", "second"}) {
+        REQUIRE(run_apsl("run " + scene_path("curtain.json") + " --frames 12 --backend " + backend + " --out " +
+                         (folder.path() / name).string())
+                    .exit_code == 0);
+    }
+    const std::set<std::string> names = file_names(folder.path() / "first");
+    CHECK(names.size() == 12 + 4);
+    for (const std::string& name : names) {
+        if (name == "report.json") continue;
+        CAPTURE(name);
+        CHECK(read_bytes(folder.path() / "first" / name) == read_bytes(folder.path() / "second" / name));
+    }
+    CHECK(without_seconds(read_json(folder.path() / "first" / "report.json")) ==
+          without_seconds(read_json(folder.path() / "second" / "report.json")));
+}
+
+TEST_CASE("a shorter run into the same folder leaves nothing of the longer one") {
+    const TemporaryFolder folder;
+    const std::string command = "run " + scene_path("curtain_unfiltered.json") +
+                                " --set mesh.grid.vertices=[5,5] --set pins=[] --out " + folder.path().string();
+    folder.write("notes.txt", "kept");
+    REQUIRE(run_apsl(command + " --frames 5").exit_code == 0);
+    REQUIRE(run_apsl(command + " --frames 2").exit_code == 0);
+    CHECK(file_names(folder.path()) == std::set<std::string>{"cloth.obj", "cloth.pc2", "cloth.pvd", "frame_0000.vtp",
+                                                             "frame_0001.vtp", "notes.txt", "report.json"});
+}
+
+TEST_CASE("a scene without strain limiting needs no OpenCL at all") {
+    const TemporaryFolder folder;
+    const std::string report_file = (folder.path() / "report.json").string();
+    const ProgramRun run =
+        run_apsl("run " + scene_path("curtain_unfiltered.json") + " --frames 2 --report " + report_file,
+                 "OCL_ICD_VENDORS=" + folder.path().string());
+    CAPTURE(run.errors);
+    REQUIRE(run.exit_code == 0);
+    const nlohmann::json report = read_json(report_file);
+    CHECK(report["backend"] == "none");
+    CHECK(report["stages"] == nlohmann::json::array({"implicit_springs"}));
+    CHECK(report["device_bytes"] == 0);
+    CHECK(report["frames"][0]["sub_steps"] == 0);
+    CHECK(report["frames"][1]["max_area_change"] > 0.0);
+}
+
+TEST_CASE("only a profiled run lists kernels") {
+    const TemporaryFolder folder;
+    const std::string report_file = (folder.path() / "report.json").string();
+    const std::string command = "run " + scene_path("curtain.json") + " --frames 2 --report " + report_file;
+    REQUIRE(run_apsl(command).exit_code == 0);
+    CHECK(read_json(report_file)["kernels"].empty());
+    REQUIRE(run_apsl(command + " --profile").exit_code == 0);
+    const nlohmann::json kernels = read_json(report_file)["kernels"];
+    REQUIRE_FALSE(kernels.empty());
+    for (const nlohmann::json& kernel : kernels) {
+        CHECK(kernel["launches"] > 0);
+        CHECK(kernel["seconds"] > 0.0);
+    }
+}
+
+TEST_CASE("a simulation that breaks down exits with 1 and a report that says where") {
+    const TemporaryFolder folder;
+    const std::string report_file = (folder.path() / "report.json").string();
+    // Gravity beyond what a double holds after a few steps.
+    const ProgramRun run =
+        run_apsl("run " + scene_path("curtain_unfiltered.json") +
+                 " --set gravity=[0,-1e308,0] --set time_step=100 --set integrator.none={} --report " + report_file);
+    CHECK(run.exit_code == 1);
+    CHECK_THAT(run.errors, Catch::Contains("broke down in frame"));
+    const nlohmann::json report = read_json(report_file);
+    CHECK(report["summary"]["status"] == "diverged");
+    CHECK(report["breakdown"]["frame"] == report["frames"].size() - 1);
+    CHECK(report["frames"].back()["status"] == "diverged");
+    CHECK(contains(keys(report["breakdown"]), {"frame", "step", "stage", "what"}));
+}
+
+TEST_CASE("solves that do not converge are a status and a piece of advice") {
+    const TemporaryFolder folder;
+    const std::string report_file = (folder.path() / "report.json").string();
+    const ProgramRun run = run_apsl("run " + scene_path("curtain.json") +
+                                    " --frames 3 --set strain_limiting.max_iterations=1"
+                                    " --set strain_limiting.tolerance=1e-5 --report " +
+                                    report_file);
+    CHECK(run.exit_code == 0);
+    CHECK_THAT(run.errors, Catch::Contains("warning: strain limiting did not converge in 3 of 3 frames; raise"));
+    CHECK(read_json(report_file)["summary"]["status"] == "not_converged");
+}
+
+TEST_CASE("the printed matrix below 2 is warned of, the consistent one is not") {
+    const std::string command = "run " + scene_path("curtain.json") + " --frames 1";
+    CHECK_THAT(run_apsl(command + " --set strain_limiting.matrix=printed").errors,
+               Catch::Contains("warning: ") && Catch::Contains("printed matrix diverge"));
+    CHECK_THAT(run_apsl(command).errors, !Catch::Contains("warning"));
+}
+
+TEST_CASE("several steps a frame are the same motion as so many frames") {
+    const TemporaryFolder folder;
+    const std::string scene = scene_path("twist.json") + " --backend reference --set mesh.grid.vertices=[9,9]";
+    REQUIRE(run_apsl("run " + scene + " --frames 6 --out " + (folder.path() / "steps").string()).exit_code == 0);
+    REQUIRE(
+        run_apsl("run " + scene + " --frames 2 --set steps_per_frame=3 --out " + (folder.path() / "frames").string())
+            .exit_code == 0);
+    CHECK(read_bytes(folder.path() / "steps" / "frame_0005.vtp") ==
+          read_bytes(folder.path() / "frames" / "frame_0001.vtp"));
+    const nlohmann::json frames = read_json(folder.path() / "frames" / "report.json")["frames"];
+    const nlohmann::json steps = read_json(folder.path() / "steps" / "report.json")["frames"];
+    int iterations = 0;
+    double greatest = 0.0;
+    for (int k = 3; k < 6; ++k) {
+        iterations += steps[k]["cg_iterations"].get<int>();
+        greatest = std::max(greatest, steps[k]["max_area_change"].get<double>());
+    }
+    CHECK(frames[1]["cg_iterations"] == iterations);
+    CHECK(frames[1]["max_area_change"] == greatest);
+}
+
+TEST_CASE("devices are listed with their numbers, the version and a short help are there") {
+    const ProgramRun devices = run_apsl("devices");
+    CHECK(devices.exit_code == 0);
+    CHECK_THAT(devices.output, Catch::StartsWith("0  ") && Catch::Contains("compute units"));
+    CHECK(devices.output == run_apsl("devices").output);
+    CHECK_THAT(run_apsl("--version").output, Catch::StartsWith("apsl "));
+    for (const std::string arguments : {"--help", "run --help", "validate --help"}) {
+        const ProgramRun help = run_apsl(arguments);
+        CHECK(help.exit_code == 0);
+        CHECK(std::count(help.output.begin(), help.output.end(), '\n') <= 24);
+        std::size_t line = 0;
+        for (const char letter : help.output) {
+            line = letter == '\n' ? 0 : line + 1;
+            CHECK(line <= 80);
+        }
+    }
+}
+
+TEST_CASE("every scene of the project is valid and runs") {
+    const std::string scene = GENERATE("curtain.json", "curtain_unfiltered.json", "sphere_drape.json",
+                                       "stand_alone_curtain.json", "twist.json", "skirt.json");
+    CAPTURE(scene);
+    const ProgramRun validated = run_apsl("validate " + scene_path(scene));
+    CHECK(validated.exit_code == 0);
+    CHECK(validated.errors.empty());
+    const ProgramRun run = run_apsl("run --frames 2 " + scene_path(scene));
+    CAPTURE(run.errors);
+    CHECK(run.exit_code == 0);
+}
+
+TEST_CASE("garments run by path") {
+    const std::string meshes = APSL_MESHES;
+    if (!std::filesystem::is_directory(meshes)) {
+        WARN("../shared/meshes is not there: the garments are passed over");
+        return;
+    }
+    const std::string file = GENERATE("tshirt.obj", "skirt.obj");
+    const TemporaryFolder folder;
+    const std::string report_file = (folder.path() / "report.json").string();
+    CAPTURE(file);
+    const ProgramRun run = run_apsl(
+        "run " + scene_path("skirt.json") + " --frames 10 --set mesh.file=" + meshes + "/" + file +
+        " --set mesh.height=1 --set 'pins=[{\"corners\":[\"min_x_max_y\",\"max_x_max_y\"]}]' --report " + report_file);
+    CAPTURE(run.errors);
+    CHECK(run.exit_code == 0);
+    const nlohmann::json report = read_json(report_file);
+    CHECK(report["triangles"] == (file == "tshirt.obj" ? 3726 : 4925));
+    CHECK(report["vertices"] == (file == "tshirt.obj" ? 1921 : 2565));
+    CHECK(report["frames"].size() == 10);
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "run/scene_cloth.hpp"
+
+#include "run/parse_scene.hpp"
+#include "scenes/sample_files.hpp"
+
+#include <catch2/catch.hpp>
+#include <numeric>
+
+using namespace apsl;
+using namespace apsl::scenes;
+using apsl::test::input_error_of;
+using apsl::test::TemporaryFolder;
+
+namespace {
+
+Scene parse(const std::string& text) {
+    return parse_scene(nlohmann::json::parse(text), "scene.json");
+}
+
+SceneCloth pinned_grid(const std::string& pins) {
+    return make_scene_cloth(parse(R"({"mesh": {"grid": {"vertices": [5, 3], "size": [4, 2]}}, "pins": )" + pins + "}"));
+}
+
+SceneCloth cloth_of_file(const std::string& file) {
+    Scene scene;
+    scene.mesh = MeshFile{.file = file, .height = {}};
+    return make_scene_cloth(scene);
+}
+
+}  // namespace
+
+TEST_CASE("a cloth weighs its area times the density") {
+    const SceneCloth cloth = make_scene_cloth(parse(R"({"mesh": {"grid": {"size": [2, 3]}}, "density": 0.5})"));
+    CHECK(std::reduce(cloth.state.masses.begin(), cloth.state.masses.end()) == Approx(3.0));
+    CHECK(cloth.warnings.empty());
+}
+
+TEST_CASE("pins select vertices by number, corner and box") {
+    CHECK(pinned_grid(R"([{"vertices": [3, 0]}])").pins[0].vertices == std::vector<std::uint32_t>{3, 0});
+    CHECK(pinned_grid(R"([{"corners": ["min_x_min_z", "max_x_min_z", "min_x_max_z", "max_x_max_z"]}])")
+              .pins[0]
+              .vertices == std::vector<std::uint32_t>{0, 4, 10, 14});
+    CHECK(pinned_grid(R"([{"corners": ["max_z_min_x", "max_x"]}])").pins[0].vertices ==
+          std::vector<std::uint32_t>{10, 4});
+    CHECK(pinned_grid(R"([{"box": {"max": [-1, 9, 0]}}])").pins[0].vertices == std::vector<std::uint32_t>{0, 1, 5, 6});
+    const SceneCloth cloth = pinned_grid(R"([{"vertices": [1]}, {"box": {"min": [2, -1, -1]}}])");
+    for (std::size_t v = 0; v < 15; ++v) CHECK((cloth.state.inverse_masses[v] == 0.0) == (v == 1 || v % 5 == 4));
+}
+
+TEST_CASE("pins that select nothing are named") {
+    const auto [pins, message] = GENERATE(table<std::string, std::string>({
+        {R"([{"vertices": [0]}, {"vertices": [1, 15]}])",
+         "scene.json: pins[1].vertices[1]: vertex 15 is out of range, expected 0 to 14"},
+        {R"([{"corners": ["min_w"]}])", "scene.json: pins[0].corners: \"min_w\" is no corner"},
+        {R"([{"corners": ["min_x_max_x"]}])", "scene.json: pins[0].corners: \"min_x_max_x\" is no corner"},
+        {R"([{"corners": ["min_x-max_z"]}])", "scene.json: pins[0].corners: \"min_x-max_z\" is no corner"},
+        {R"([{"corners": [""]}])", "scene.json: pins[0].corners: \"\" is no corner"},
+        {R"([{"box": {"min": [9, 9, 9]}}])", "scene.json: pins[0].box: no vertex of the mesh lies inside"},
+    }));
+    CHECK_THAT(input_error_of([given = pins] { pinned_grid(given); }), Catch::StartsWith(message));
+}
+
+TEST_CASE("flaws of a mesh are warned of, with what to do") {
+    const TemporaryFolder folder;
+    const std::string isolated = folder.write("isolated.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n");
+    REQUIRE(cloth_of_file(isolated).warnings.size() == 1);
+    CHECK(cloth_of_file(isolated).warnings[0] ==
+          isolated + ": vertices in no triangle: 1; they stay where they are, delete them from the mesh");
+    const std::string fin =
+        folder.write("fin.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 2 1 4\nf 1 2 5\n");
+    REQUIRE(cloth_of_file(fin).warnings.size() == 1);
+    CHECK_THAT(cloth_of_file(fin).warnings[0], Catch::StartsWith(fin + ": edges with more than two triangles: 1;"));
+}
+
+TEST_CASE("a triangle of rest area 0 is an error") {
+    const TemporaryFolder folder;
+    const std::string flat = folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
+    CHECK(input_error_of([&] { cloth_of_file(flat); }) == flat + ": triangle 1 has rest area 0, expected an area > 0");
+}
