@@ -43,9 +43,11 @@ using Collider = std::variant<Sphere, Plane, Capsule>;
 void validate(const Collider& collider);
 
 /// Collision response on velocities, vertex by vertex, after the filter: where x + Δt v lies inside a collider, v is
-/// changed so that it lies on the surface, and friction takes up to μ times that change off the tangential velocity.
-/// Pinned vertices are left alone. Colliders stand still and are not checked here (see validate).
-/// Returns the number of vertices touched. Throws Error(invalid_argument) unless time_step > 0.
+/// changed so that it lies on the surface (what starts inside leaves within one step, and keeps that speed), and
+/// friction takes up to μ times that change off the tangential velocity. Only the end of the step is looked at: what
+/// crosses a collider whole within one step is not seen. Pinned vertices are left alone. Colliders stand still and are
+/// not checked here (see validate). Returns the number of vertices touched. Throws Error(invalid_argument) unless
+/// time_step > 0.
 std::size_t resolve_collisions(ClothState& cloth, std::span<const Collider> colliders, double time_step);
 
 }  // namespace apsl::scenes
