@@ -30,6 +30,8 @@ APSL_KERNEL void update_velocities(__global const apsl_cloth* cloths, __global c
         const float3 start = vload3(0, positions + position_offset + (ulong)i * APSL_POSITION_STRIDE);
         // The same fused expression as predict_positions: a vertex nothing moved gets exactly zero.
         const float3 correction = x.xyz - fma((float3)(time_step), before, start);
-        vstore3(before + correction * inverse_time_step, 0, velocity);
+        const float3 after = before + correction * inverse_time_step;
+        // No triangle vouches for a vertex that is in none, nor for a velocity that overflows.
+        if (all(isfinite(after))) vstore3(after, 0, velocity);
     }
 }
