@@ -149,7 +149,8 @@ struct StrainLimiter::Implementation {
 
     BufferHandle cloths, parameters, states, stats, partials;
     BufferHandle triangles, corner_offsets, corners, row_offsets, columns, shared, values;
-    BufferHandle predicted, vertex_forces, gradients, residual, product, direction, direction_product, pressure;
+    BufferHandle predicted, vertex_forces, gradients, residual, damped_diagonal, product, direction, direction_product,
+        pressure;
 
     ProgramHandle program;
     Kernel predict_positions, assemble_gradients, measure_area_change, begin_solve, end_call;
@@ -185,6 +186,7 @@ StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_
     gradients = buffer(std::size_t{triangle_count} * sizeof(cl_float8));
     const std::size_t per_triangle = std::size_t{triangle_count} * sizeof(float);
     residual = zeroed_buffer(triangle_count);
+    damped_diagonal = zeroed_buffer(triangle_count);
     product = zeroed_buffer(triangle_count);
     direction = buffer(per_triangle);
     direction_product = buffer(per_triangle);
@@ -218,7 +220,7 @@ void StrainLimiter::Implementation::bind_internal_arguments() {
     set_arguments(predict_positions, 0, cloths, parameters, states, stats, predicted);
     assemble_gradients = kernel("assemble_gradients");
     set_arguments(assemble_gradients, 0, cloths, parameters, states, partials, triangles, predicted, gradients,
-                  residual);
+                  residual, damped_diagonal);
     measure_area_change = kernel("measure_area_change");
     set_arguments(measure_area_change, 0, cloths, partials, triangles, predicted);
     begin_solve = kernel("begin_solve");
@@ -244,8 +246,8 @@ void StrainLimiter::Implementation::bind_internal_arguments() {
         set_arguments(apply_dot, 0, cloths, states, partials, triangles, gradients, vertex_forces, residual, product);
     }
     cg_update = kernel("cg_update");
-    set_arguments(cg_update, 0, cloths, states, stats, partials, residual, product, direction, direction_product,
-                  pressure);
+    set_arguments(cg_update, 0, cloths, states, stats, partials, residual, damped_diagonal, product, direction,
+                  direction_product, pressure);
     gather_displacements = kernel("gather_displacements");
     set_arguments(gather_displacements, 0, cloths, parameters, states, stats, partials, corner_offsets, corners,
                   gradients, pressure, predicted);
@@ -271,8 +273,8 @@ void StrainLimiter::Implementation::bind_caller_arguments(const Buffers& buffers
     bind(predict_positions, 5, buffers.positions);
     bind(predict_positions, 7, buffers.velocities);
     bind(predict_positions, 9, buffers.inverse_masses);
-    bind(assemble_gradients, 8, buffers.rest_areas);
-    bind(assemble_gradients, 10, buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas);
+    bind(assemble_gradients, 9, buffers.rest_areas);
+    bind(assemble_gradients, 11, buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas);
     bind(measure_area_change, 4, buffers.rest_areas);
     bind(update_velocities, 4, buffers.positions);
     bind(update_velocities, 6, buffers.velocities);
@@ -307,7 +309,7 @@ void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int i
             set_argument(apply_dot, assembled() ? 9 : 12, k);
         }
         launch(commands, apply_dot);
-        set_argument(cg_update, 9, k);
+        set_argument(cg_update, 10, k);
         launch(commands, cg_update);
     }
     // The slot of the residual after the last iteration.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Areas, right-hand side of Eq. (5) and scaled corner gradients: everything a solve needs of the geometry.
 // Reference: apsl::reference::corner_gradients, areas, and the diagonal of Eq. (3).
-// Moves 12 B indices, about 8 B positions, 4 B rest area read; 32 B gradients, 4 B residual written, a triangle.
+// Moves 12 B indices, about 8 B positions, 4 B rest area read; 32 B gradients, 4 B residual, 4 B α D written, a
+// triangle.
 #include "gradients.h"
 #include "layout.h"
 #include "work_group.h"
@@ -82,14 +83,15 @@ APSL_KERNEL void assemble_gradients(__global const apsl_cloth* cloths, __global 
                                     __global const apsl_solve_state* states, __global float* partials,
                                     __global const uint* triangles, __global const float4* predicted,
                                     __global apsl_gradients* gradients, __global float* residual,
-                                    __global const float* rest_areas, ulong rest_area_offset,
-                                    __global const float* regularization, ulong regularization_offset) {
+                                    __global float* damped_diagonal, __global const float* rest_areas,
+                                    ulong rest_area_offset, __global const float* regularization,
+                                    ulong regularization_offset) {
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const apsl_cloth cloth = cloths[c];
     const apsl_range range = share_of(cloth.triangle_count, !states[c].stopped);
     apsl_area_sums sums = {0.0f, 0.0f, 0.0f, 0.0f};
-    float residual_squared = 0.0f;
+    float residual_squared = 0.0f, scaled_squared = 0.0f;
 #if APSL_REGULARIZATION_PER_TRIANGLE
     (void)parameters;
 #else
@@ -107,14 +109,18 @@ APSL_KERNEL void assemble_gradients(__global const apsl_cloth* cloths, __global 
 #endif
         const float d = diagonal(triangle);
         const float scale = rest_area > 0.0f ? jacobi_scale(alpha, d) : 0.0f;
-        const float r = scale * (triangle.area - rest_area);
+        const float stretch = scale > 0.0f ? triangle.area - rest_area : 0.0f;
+        const float r = scale * stretch;
         gradients[a] = scaled_gradients(triangle, alpha, scale);
         residual[a] = r;
-        residual_squared += r * r;
+        damped_diagonal[a] = alpha * d;
+        residual_squared += stretch * stretch;
+        scaled_squared += r * r;
         add_area(&sums, triangle.area, rest_area, isfinite(triangle.area) && isfinite(d));
     }
     store_area_partials(sums, partials, scratch);
     store_partial(partials, APSL_PARTIAL_RESIDUAL_EVEN, group_sum(residual_squared, scratch));
+    store_partial(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, group_sum(scaled_squared, scratch));
 }
 
 // The same sums without the gradients: the areas a call leaves behind.

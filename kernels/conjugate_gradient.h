@@ -5,7 +5,8 @@
 //   (matrix-free, consistent)  gather_vertex_forces    u = ½ w Σ ĝ r
 //   *_apply_dot / *_spmv_dot                           q = A r, partial sums of r·q
 //   cg_update                                          p = r + βp, s = q + βs, y += αp, r −= αs, partial sums of r·r
-// The first of them decides for all whether the iteration is done (begin_iteration).
+// The first of them decides for all whether the iteration is done (begin_iteration). It decides by ‖r‖ in m², not by
+// the scaled r̄·r̄ that CG itself minimises over: the scaled one weighs a triangle beside a pin too little to see it.
 #ifndef APSL_CONJUGATE_GRADIENT_H
 #define APSL_CONJUGATE_GRADIENT_H
 
@@ -18,12 +19,14 @@ static inline bool begin_iteration(__global const apsl_parameters* parameters, _
                                    __global float* partials, int iteration, __local float* scratch) {
     const uint c = (uint)get_group_id(1);
     const uint slot = (uint)iteration & 1u;
-    const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
+    const uint groups = (uint)get_num_groups(0);
+    const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, groups, scratch);
+    const float scaled_residual = sum_partials(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN + slot, groups, scratch);
     const bool iterating = !states[c].stopped && iteration < parameters[c].max_iterations &&
                            residual > parameters[c].tolerance_squared * states[c].initial_residual;
     if (get_group_id(0) == 0 && get_local_id(0) == 0) {
         states[c].iterating = iterating ? 1 : 0;
-        states[c].residual[slot] = residual;
+        states[c].scaled_residual[slot] = scaled_residual;
     }
     return iterating;
 }

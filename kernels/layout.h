@@ -50,23 +50,25 @@ typedef struct {
 
 // Where a cloth's solve stands. Each field is written by one work-group in a launch that does not read it elsewhere.
 typedef struct {
-    apsl_int stopped;        // no further sub-step in this call
-    apsl_int iterating;      // this CG iteration does its work
-    float initial_residual;  // ‖b‖², norm of 1/(α diag G)
-    float residual[2];       // γ = ‖r‖², of even and of odd iterations
-    float step[2];           // CG step length, of even and of odd iterations
-    apsl_int has_pressure;   // the solve has done an iteration
+    apsl_int stopped;          // no further sub-step in this call
+    apsl_int iterating;        // this CG iteration does its work
+    float initial_residual;    // ‖b‖², m⁴
+    float scaled_residual[2];  // γ = r̄·r̄ with r̄ = r/√(α diag G), of even and of odd iterations
+    float step[2];             // CG step length, of even and of odd iterations
+    apsl_int has_pressure;     // the solve has done an iteration
 } apsl_solve_state;
 
 // Partial results of the work-groups of a launch, one float a group for each of these.
-#define APSL_PARTIAL_RESIDUAL_EVEN 0
+#define APSL_PARTIAL_RESIDUAL_EVEN 0  // ‖r‖² after an even number of iterations
 #define APSL_PARTIAL_RESIDUAL_ODD 1
-#define APSL_PARTIAL_CURVATURE 2  // r·Ar
-#define APSL_PARTIAL_MAX_CHANGE 3
-#define APSL_PARTIAL_SQUARED_CHANGE 4
-#define APSL_PARTIAL_MEASURED 5  // triangles with a rest area
-#define APSL_PARTIAL_NOT_FINITE 6
-#define APSL_PARTIAL_KINDS 7
+#define APSL_PARTIAL_SCALED_RESIDUAL_EVEN 2
+#define APSL_PARTIAL_SCALED_RESIDUAL_ODD 3
+#define APSL_PARTIAL_CURVATURE 4  // r̄·Ar̄
+#define APSL_PARTIAL_MAX_CHANGE 5
+#define APSL_PARTIAL_SQUARED_CHANGE 6
+#define APSL_PARTIAL_MEASURED 7  // triangles with a rest area
+#define APSL_PARTIAL_NOT_FINITE 8
+#define APSL_PARTIAL_KINDS 9
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSL_TRIANGLE_ALIGNMENT 16

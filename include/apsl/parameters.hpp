@@ -25,7 +25,7 @@ struct Parameters {
     float regularization = 1.2f;     ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
     std::int32_t sub_steps = 10;     ///< ≥ 0; the fixed count of Algorithm 1
     float target_area_change = 0.0f;  ///< |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it
-    float tolerance = 0.1f;  ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, both in the norm of 1/(α diag G)
+    float tolerance = 0.1f;  ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, Euclidean norms of areas in m²
     std::int32_t max_iterations = 50;  ///< ≥ 1, CG iterations a solve
 };
 

@@ -24,7 +24,11 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
     p = z;
     Real rz = r.dot(z);
     if (!std::isfinite(rz)) return {0, not_a_number, false};
-    const Real norm_b = std::sqrt(rz);
+    // A row without a diagonal cannot be reduced and has no say in when to stop.
+    const auto norm = [&inverse_diagonal](const TriangleVector<Real>& v) {
+        return std::sqrt((inverse_diagonal.array() > Real(0)).select(v.array().square(), Real(0)).sum());
+    };
+    const Real norm_b = norm(r);
     if (norm_b == Real(0)) return {0, Real(0), true};
 
     SolveResult<Real> result{0, Real(1), false};
@@ -42,7 +46,7 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
         const Real next_rz = r.dot(z);
         ++result.iterations;
         if (!std::isfinite(next_rz)) return {result.iterations, not_a_number, false};
-        const Real norm_r = std::sqrt(next_rz);
+        const Real norm_r = norm(r);
         result.relative_residual = norm_r / norm_b;
         if (norm_r <= tolerance * norm_b) {
             result.converged = true;

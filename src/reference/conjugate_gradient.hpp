@@ -21,15 +21,16 @@ struct ConjugateGradientScratch {
 template <class Real>
 struct SolveResult {
     int iterations;
-    Real relative_residual;  ///< ‖r‖ / ‖b‖ in the norm of D⁻¹; NaN where a number on the way was not finite
+    Real relative_residual;  ///< ‖r‖ / ‖b‖, rows without a diagonal left out; NaN where a number on the way was not
+                             ///< finite
     bool converged;
 };
 
 /// Solves A λ = b by Conjugate Gradient from λ = 0, with the Jacobi preconditioner D = diag A = α diag G.
 ///
-/// Stops when √(rᵀD⁻¹r) ≤ tolerance · √(bᵀD⁻¹b), the norm the iteration has at hand anyway; after max_iterations; or
-/// where the direction is null to rounding (pᵀAp ≤ ε pᵀDp), which α = 1 can bring about: λ then is the last one.
-/// Rows with D = 0 (three pinned vertices, no area) have no part in the norms, and λ = 0 there.
+/// Stops when ‖r‖ ≤ tolerance · ‖b‖ (Euclidean, areas in m²); after max_iterations; or where the direction is null to
+/// rounding (pᵀAp ≤ ε pᵀDp), which α = 1 can bring about: λ then is the last one. Rows with D = 0 (three pinned
+/// vertices, no area) have no part in the norms, and λ = 0 there.
 template <class Real>
 SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const TriangleVector<Real>& b, Real tolerance,
                                      int max_iterations, ConjugateGradientScratch<Real>& scratch,
