@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+//
+// Numbers no cloth should have: never a NaN handed on.
+#include "filter/filtered.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The call ends as diverged, and the velocities have the bytes they were given with.
+void check_diverged(const MovingCloth& cloth, const Options& options) {
+    StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+    const CallerBuffers buffers({&cloth, 1}, options), given({&cloth, 1}, options);
+    const Parameters parameters{.sub_steps = 2};
+    const std::vector<Stats> stats = filter(limiter, buffers, {&parameters, 1});
+    CHECK(stats[0].status == Status::diverged);
+    CHECK(same_bytes(buffers.read_velocities(), given.read_velocities()));
+}
+
+void check_finite(const MovingCloth& cloth, const Options& options, const Parameters& parameters = {}) {
+    const Filtered filtered = filter_on_device(cloth, options, parameters);
+    CHECK(filtered.stats.status != Status::diverged);
+    CHECK(all_finite(filtered.velocities));
+    CHECK(std::isfinite(filtered.stats.max_area_change));
+    CHECK(std::isfinite(filtered.stats.rms_area_change));
+    CHECK(std::isfinite(filtered.stats.residual));
+}
+
+MovingCloth a_cloth() {
+    return moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1);
+}
+
+}  // namespace
+
+TEST_CASE("input that is not finite is diverged, and the velocities stay", "[filter]") {
+    for (const Options& options : variants)
+        for (const double bad : {not_a_number, infinity, -infinity, 1e38}) {
+            CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply), bad);
+            MovingCloth positions = a_cloth();
+            positions.positions[100] = bad;
+            check_diverged(positions, options);
+            MovingCloth velocities = a_cloth();
+            velocities.velocities[100] = bad;
+            check_diverged(velocities, options);
+            if (std::isfinite(bad) || bad < 0.0) continue;
+            MovingCloth masses = a_cloth();
+            masses.inverse_masses[30] = bad;
+            check_diverged(masses, options);
+            MovingCloth rest_areas = a_cloth();
+            rest_areas.rest_areas[30] = bad;
+            check_diverged(rest_areas, options);
+        }
+}
+
+TEST_CASE("an isolated vertex that is not finite does not spread, and keeps its velocity", "[filter]") {
+    Mesh mesh = grid(5, 5, 1.0, 1.0, Diagonals::alternating);
+    mesh.positions.insert(mesh.positions.end(), {0.0, 0.0, 0.0});
+    MovingCloth cloth = moving_cloth(mesh, 1);
+    cloth.positions[75] = infinity;
+    cloth.inverse_masses[25] = 1.0;
+    const Filtered filtered = filter_on_device(cloth, {}, Parameters{});
+    CHECK(all_finite(filtered.velocities));
+    for (std::size_t k = 75; k < 78; ++k) CHECK(filtered.velocities[k] == cloth.velocities[k]);
+}
+
+TEST_CASE("triangles without area, wholly pinned, or without rest area take no part and harm nobody", "[filter]") {
+    for (const Options& options : variants) {
+        CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply));
+        MovingCloth degenerate = a_cloth();
+        for (const std::size_t v : {30, 31, 32})
+            for (std::size_t k = 0; k < 3; ++k) {
+                degenerate.positions[3 * v + k] = degenerate.positions[90 + k];
+                degenerate.velocities[3 * v + k] = degenerate.velocities[90 + k];
+            }
+        check_finite(degenerate, options);
+
+        MovingCloth pinned = a_cloth();
+        for (const std::uint32_t v : pinned.topology->triangles()[50]) pinned.inverse_masses[v] = 0.0;
+        check_finite(pinned, options);
+
+        MovingCloth all_pinned = a_cloth();
+        all_pinned.inverse_masses.assign(all_pinned.inverse_masses.size(), 0.0);
+        check_finite(all_pinned, options);
+        CHECK(filter_on_device(all_pinned, options, Parameters{}).velocities == all_pinned.velocities);
+
+        MovingCloth no_rest_area = a_cloth();
+        no_rest_area.rest_areas[12] = 0.0;
+        no_rest_area.rest_areas[13] = -1.0;
+        check_finite(no_rest_area, options);
+    }
+}
+
+TEST_CASE("all vertices in one point, and a collapsed line", "[filter]") {
+    for (const Options& options : variants) {
+        MovingCloth point = a_cloth();
+        point.positions.assign(point.positions.size(), 0.25);
+        point.velocities.assign(point.velocities.size(), 0.0);
+        check_finite(point, options);
+        MovingCloth line = a_cloth();
+        for (std::size_t n = 0; n < line.positions.size(); ++n)
+            if (n % 3 != 0) line.positions[n] = line.velocities[n] = 0.0;
+        check_finite(line, options);
+    }
+}
+
+TEST_CASE("alpha per triangle that is not a number >= 1 hands nothing broken on", "[filter]") {
+    for (const Options& variant : variants) {
+        Options options = variant;
+        options.regularization_per_triangle = true;
+        for (const double bad : {not_a_number, infinity, 0.0, -3.0}) {
+            CAPTURE(bad);
+            MovingCloth cloth = a_cloth();
+            cloth.regularization[7] = bad;
+            CHECK(all_finite(filter_on_device(cloth, options, Parameters{}).velocities));
+        }
+    }
+}
+
+TEST_CASE("ten kilometres from the origin the result is coarse but finite", "[filter]") {
+    for (const Options& options : variants) {
+        MovingCloth cloth = a_cloth();
+        for (std::size_t n = 0; n < cloth.positions.size(); ++n)
+            cloth.positions[n] = static_cast<float>(cloth.positions[n] + 1e4);
+        check_finite(cloth, options);
+    }
+}
+
+TEST_CASE("extreme masses and time steps stay finite", "[filter]") {
+    for (const Options& options : variants) {
+        MovingCloth cloth = a_cloth();
+        for (std::size_t v = 0; v < cloth.inverse_masses.size(); v += 3) cloth.inverse_masses[v] *= 1e6;
+        check_finite(cloth, options);
+        for (const float time_step : {1e-6f, 1.0f}) {
+            CAPTURE(time_step);
+            const Filtered filtered = filter_on_device(a_cloth(), options, {.time_step = time_step});
+            CHECK(all_finite(filtered.velocities));
+        }
+    }
+}

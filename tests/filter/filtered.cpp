@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "filter/filtered.hpp"
+
+#include "support/tolerances.hpp"
+
+#include <apsl/reference.hpp>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+
+namespace apsl::test {
+
+Filtered filter_on_device(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
+                          std::size_t offset) {
+    StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+    const CallerBuffers buffers({&cloth, 1}, options, offset);
+    const std::vector<Stats> stats = filter(limiter, buffers, {&parameters, 1});
+    const std::vector<float> velocities = buffers.read_velocities();
+    return {{velocities.begin(), velocities.end()}, stats[0]};
+}
+
+Filtered filter_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
+    reference::StrainLimiter limiter(cloth.topology, options.matrix);
+    std::vector<double> velocities = cloth.velocities;
+    std::span<const double> alpha;
+    if (options.regularization_per_triangle) alpha = cloth.regularization;
+    limiter.enqueue({cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, alpha}, parameters);
+    return {velocities, limiter.read_stats()};
+}
+
+double max_area_change(const MovingCloth& cloth, const std::vector<double>& velocities, double time_step) {
+    std::vector<double> end = cloth.positions;
+    for (std::size_t n = 0; n < end.size(); ++n) end[n] += time_step * velocities[n];
+    const std::vector<double> areas = reference::areas<double>(*cloth.topology, end);
+    double change = 0.0;
+    for (std::size_t a = 0; a < areas.size(); ++a)
+        if (cloth.rest_areas[a] > 0.0)
+            change = std::max(change, std::abs(areas[a] - cloth.rest_areas[a]) / cloth.rest_areas[a]);
+    return change;
+}
+
+bool all_finite(const std::vector<double>& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
+}
+
+double greatest(const std::vector<double>& numbers) {
+    double result = 0.0;
+    for (const double number : numbers) result = std::max(result, std::abs(number));
+    return result;
+}
+
+void check_against_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
+                             std::size_t offset) {
+    const Filtered got = filter_on_device(cloth, options, parameters, offset);
+    const Filtered want = filter_with_reference(cloth, options, parameters);
+    const auto time_step = static_cast<double>(parameters.time_step);
+    const auto tolerance = static_cast<double>(parameters.tolerance);
+
+    std::vector<double> correction(want.velocities.size());
+    for (std::size_t n = 0; n < correction.size(); ++n) correction[n] = want.velocities[n] - cloth.velocities[n];
+    // Two solves that meet the tolerance may stop an iteration apart: each then is off by the condition number times
+    // the tolerance, about 20 at α = 1.2, and more where α is nearer to 1. Beyond that 32 bits round positions at their
+    // own size, in every sub-step, and divide by the time step.
+    const double solves = 2.0 * 20.0 * tolerance * norm(correction);
+    const double rounding = elementwise_tolerance(20.0 * (parameters.sub_steps + 1)) *
+                            (norm(cloth.positions) / time_step + norm(cloth.velocities));
+    CHECK(difference(got.velocities, want.velocities) <= solves + rounding);
+    CHECK(got.stats.status == want.stats.status);
+    CHECK(got.stats.sub_steps == want.stats.sub_steps);
+    CHECK(std::abs(got.stats.cg_iterations - want.stats.cg_iterations) <= want.stats.sub_steps);
+    CHECK((got.stats.status != Status::ok || got.stats.residual <= parameters.tolerance));
+
+    // What the device says of the areas, against the areas its velocities lead to. Positions round at their own size:
+    // relative to a triangle's height that is the relative error of its area.
+    const double smallest = *std::min_element(cloth.rest_areas.begin(), cloth.rest_areas.end());
+    const double area_error = elementwise_tolerance(10) * (1.0 + greatest(cloth.positions) / std::sqrt(smallest));
+    CHECK(std::abs(static_cast<double>(got.stats.max_area_change) -
+                   max_area_change(cloth, got.velocities, time_step)) <= 4.0 * area_error);
+    CHECK(got.stats.rms_area_change <= got.stats.max_area_change);
+}
+
+}  // namespace apsl::test

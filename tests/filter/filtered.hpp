@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "support/device_cloth.hpp"
+
+#include <apsl/parameters.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace apsl::test {
+
+constexpr std::array<Options, 4> variants{{{.matrix = Matrix::consistent, .apply = Apply::assembled_csr},
+                                           {.matrix = Matrix::consistent, .apply = Apply::matrix_free},
+                                           {.matrix = Matrix::printed, .apply = Apply::assembled_csr},
+                                           {.matrix = Matrix::printed, .apply = Apply::matrix_free}}};
+
+/// What a call left of one cloth.
+struct Filtered {
+    std::vector<double> velocities;  ///< m/s, [3V]
+    Stats stats;
+};
+
+/// One call on a limiter of its own.
+Filtered filter_on_device(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
+                          std::size_t offset = 0);
+Filtered filter_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters);
+
+/// Device against reference: velocities, statistics, and the statistics against areas in double precision.
+void check_against_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
+                             std::size_t offset = 0);
+
+/// max |A − A⁰| / A⁰ at the end of a step with these velocities, in double precision; rest areas ≤ 0 left out.
+double max_area_change(const MovingCloth& cloth, const std::vector<double>& velocities, double time_step);
+
+bool all_finite(const std::vector<double>& numbers);
+
+/// max |v| over all coordinates.
+double greatest(const std::vector<double>& numbers);
+
+}  // namespace apsl::test
