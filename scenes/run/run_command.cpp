@@ -129,6 +129,10 @@ int run_command(const RunOptions& options) {
         std::printf("  pictures               python3 scenes/pictures/render.py %s\n", options.out->string().c_str());
     }
     if (const std::string advice = convergence_advice(report); !advice.empty()) warn(advice);
+    if (simulation.unconverged_spring_solves() > 0) {
+        warn("the springs' solve did not converge in " + std::to_string(simulation.unconverged_spring_solves()) +
+             " steps; lower the time_step or the stiffness");
+    }
     if (report.breakdown) {
         std::fprintf(stderr,
                      "error: %s: broke down in frame %d, step %d, stage %s: %s; try a smaller time_step with more "

@@ -58,11 +58,11 @@ void Simulation::make_springs(const Scene& scene) {
         springs_.emplace(cloth_, std::move(springs), implicit->damping);
     } else if (const auto* stand_alone = std::get_if<StandAloneIntegrator>(&scene.integrator)) {
         StandAloneSprings made = stand_alone_springs(topology, cloth_.rest_positions, stand_alone->bend_stiffness);
-        if (made.connecting > 0) {
-            warnings_.push_back(scene.file + ": integrator.stand_alone: bending springs left the cloth in " +
-                                std::to_string(made.lattices) + " lattices that only areas join; " +
-                                std::to_string(made.connecting) +
-                                " springs along edges were added. Uniform diagonals need none");
+        if (const std::size_t added = made.between_lattices + made.connecting; added > 0) {
+            warnings_.push_back(
+                scene.file + ": integrator.stand_alone: bending springs left the cloth in " +
+                std::to_string(made.lattices) + " lattices that only areas join; " + std::to_string(added) +
+                " springs between them were added, an irregular mesh (a grid with random diagonals) needs none");
         }
         springs_.emplace(cloth_, std::move(made.springs), stand_alone->damping);
     }
@@ -78,7 +78,7 @@ void Simulation::name_stages(const Scene& scene) {
 
 void Simulation::integrate() {
     if (springs_) {
-        springs_->advance_velocities(cloth_, gravity_, time_step_);
+        if (!springs_->advance_velocities(cloth_, gravity_, time_step_).converged) ++unconverged_spring_solves_;
         return;
     }
     for (std::size_t v = 0; v < cloth_.inverse_masses.size(); ++v) {

@@ -30,6 +30,8 @@ public:
     const std::vector<double>& area_changes() const { return area_changes_; }
     /// In the order of a step, as the report lists them.
     const std::vector<std::string>& stages() const { return stages_; }
+    /// Steps whose spring solve ended short of its tolerance.
+    int unconverged_spring_solves() const { return unconverged_spring_solves_; }
     /// What the set-up had to do that a user should know of; one line each.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -51,6 +53,7 @@ private:
     std::optional<ImplicitSprings> springs_;
     bool keep_area_changes_;
     int frame_ = 0;
+    int unconverged_spring_solves_ = 0;
     std::vector<double> area_changes_;
     std::optional<Breakdown> breakdown_;
     std::vector<std::string> stages_;

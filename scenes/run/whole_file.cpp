@@ -9,7 +9,10 @@
 namespace apsl::scenes {
 
 WholeFile::WholeFile(std::filesystem::path place) : place_(std::move(place)), temporary_(place_.string() + ".partial") {
-    if (std::filesystem::is_directory(place_)) throw InputError(place_.string() + ": is a folder, expected a file");
+    // Never put a file in the place of a device or a pipe, least of all as root.
+    if (std::filesystem::exists(place_) && !std::filesystem::is_regular_file(place_)) {
+        throw InputError(place_.string() + ": exists and is no plain file, expected a place for one");
+    }
     stream_.open(temporary_, std::ios::binary | std::ios::trunc);
     if (!stream_) throw InputError(place_.string() + ": cannot be written, expected a writable folder");
 }
@@ -49,7 +52,7 @@ void make_writable_folder(const std::filesystem::path& folder) {
     if (error || !std::filesystem::is_directory(folder)) {
         throw InputError(folder.string() + ": cannot be made a folder" + (error ? ": " + error.message() : ""));
     }
-    WholeFile probe(folder / "probe");  // not committed: nothing stays
+    WholeFile probe(folder / ".apsl_probe");  // not committed: nothing stays
 }
 
 }  // namespace apsl::scenes

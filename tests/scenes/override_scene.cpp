@@ -19,7 +19,7 @@ nlohmann::json changed(const std::string& before, const std::string& assignment)
 
 }  // namespace
 
-TEST_CASE("--set changes, adds and takes out values") {
+TEST_CASE("set: changes, adds and takes out values") {
     const auto [before, assignment, after] = GENERATE(table<std::string, std::string, std::string>({
         {R"({"a": {"b": 1, "c": 2}})", "a.b=1.5", R"({"a": {"b": 1.5, "c": 2}})"},
         {R"({})", "a.b.c=[1, 2]", R"({"a": {"b": {"c": [1, 2]}}})"},
@@ -37,7 +37,7 @@ TEST_CASE("--set changes, adds and takes out values") {
     CHECK(changed(before, assignment) == nlohmann::json::parse(after));
 }
 
-TEST_CASE("--set of one kind of mesh or integrator puts it in place of the others") {
+TEST_CASE("set: of one kind of mesh or integrator puts it in place of the others") {
     CHECK(changed(R"({"mesh": {"grid": {}}})", "mesh.file=/tmp/x.obj") ==
           nlohmann::json::parse(R"({"mesh": {"file": "/tmp/x.obj"}})"));
     CHECK(changed(R"({"mesh": {"file": "x.obj", "height": 1}})", "mesh.grid.jitter=0.1") ==
@@ -48,12 +48,12 @@ TEST_CASE("--set of one kind of mesh or integrator puts it in place of the other
           nlohmann::json::parse(R"({"integrator": {"stand_alone": {}}})"));
 }
 
-TEST_CASE("--set mesh.file is relative to the working directory") {
+TEST_CASE("set: mesh.file is relative to the working directory") {
     CHECK(changed("{}", "mesh.file=meshes/../x.obj")["mesh"]["file"] ==
           (std::filesystem::current_path() / "x.obj").string());
 }
 
-TEST_CASE("--set that leads nowhere says where it stopped") {
+TEST_CASE("set: that leads nowhere says where it stopped") {
     const auto [assignment, message] = GENERATE(table<std::string, std::string>({
         {"a", "--set a: expected path=value"},
         {"=1", "--set =1: expected path=value"},

@@ -97,7 +97,8 @@ TEST_CASE("places that cannot be written to are refused in one line, before anyt
     check_refused(curtain + " --out " + file + "/out", "file/out: cannot be made a folder");
     check_refused(curtain + " --out " + file, "file: cannot be made a folder");
     check_refused(curtain + " --report " + file + "/report.json", "report.json: no such folder");
-    check_refused(curtain + " --report " + folder.path().string(), "is a folder, expected a file");
+    check_refused(curtain + " --report " + folder.path().string(), "exists and is no plain file");
+    check_refused(curtain + " --report /dev/null", "/dev/null: exists and is no plain file");
     check_refused(curtain + " --report " + (folder.path() / "none/report.json").string(), "no such folder");
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
