@@ -32,14 +32,20 @@ apsl_parameters device_parameters(const Parameters& p) {
             0};
 }
 
+// ‖r‖² of r = √(α D) r̄.
+double squared_norm(const ScaledSolve& solve, const std::vector<double>& scaled) {
+    double squares = 0.0;
+    for (std::size_t a = 0; a < scaled.size(); ++a) squares += solve.damped_diagonal[a] * scaled[a] * scaled[a];
+    return squares;
+}
+
 std::vector<apsl_solve_state> fresh_states(std::span<const ScaledSolve> solves) {
     std::vector<apsl_solve_state> states;
     for (const ScaledSolve& solve : solves) {
-        const std::vector<double>& b = solve.right_hand_side;
         apsl_solve_state state = poison<apsl_solve_state>(1)[0];
         state.stopped = 0;
         state.iterating = 1;
-        state.initial_residual = static_cast<float>(std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
+        state.initial_residual = static_cast<float>(squared_norm(solve, solve.right_hand_side));
         state.has_pressure = 0;
         states.push_back(state);
     }
@@ -123,6 +129,7 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       predicted(predicted_of(source_cloths)),
       gradients(gradients_of(source_cloths, solves, adjacency, p.regularization, alpha_per_triangle)),
       residual(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].right_hand_side[a]; })),
+      damped_diagonal(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].damped_diagonal[a]; })),
       values(values_of(solves)),
       vertex_forces(poison<cl_float4>(adjacency.vertex_count)),
       product(poison<float>(adjacency.triangle_count)),
@@ -134,8 +141,11 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       inverse_masses(placed(sources, &Cloth::inverse_masses, 1, {1, array_offset})),
       rest_areas(placed(sources, &Cloth::rest_areas, 1, {1, array_offset})),
       regularization(placed(sources, &Cloth::regularization, 1, {1, array_offset})) {
-    for (std::size_t c = 0; c < cloth_count(); ++c)
-        write_partial_sum(c, APSL_PARTIAL_RESIDUAL_EVEN, static_cast<double>(states.read()[c].initial_residual));
+    for (std::size_t c = 0; c < cloth_count(); ++c) {
+        const std::vector<double>& b = solves[c].right_hand_side;
+        write_partial_sum(c, APSL_PARTIAL_RESIDUAL_EVEN, squared_norm(solves[c], b));
+        write_partial_sum(c, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
+    }
 }
 
 std::vector<double> Arrays::of_cloth(const std::vector<float>& per_triangle, std::size_t cloth) const {
@@ -149,6 +159,10 @@ std::vector<float> Arrays::over_triangles(const std::function<double(std::size_t
         for (std::size_t a = 0; a < adjacency.cloths[c].triangle_count; ++a)
             all[adjacency.cloths[c].triangle_begin + a] = static_cast<float>(value(c, a));
     return all;
+}
+
+double Arrays::unscaled_squared(std::size_t cloth, const std::vector<double>& scaled) const {
+    return squared_norm(solves[cloth], scaled);
 }
 
 std::vector<double> Arrays::partials_of(std::size_t cloth, int kind) const {

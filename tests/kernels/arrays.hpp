@@ -39,9 +39,10 @@ struct Arrays {
     DeviceArray<float> partials;
     DeviceArray<std::uint32_t> triangles, corner_offsets, corners, row_offsets, columns;
     DeviceArray<std::uint8_t> shared;
-    DeviceArray<cl_float4> predicted;      ///< positions and inverse masses
-    DeviceArray<cl_float8> gradients;      ///< scaled
-    DeviceArray<float> residual;           ///< the scaled right-hand side
+    DeviceArray<cl_float4> predicted;  ///< positions and inverse masses
+    DeviceArray<cl_float8> gradients;  ///< scaled
+    DeviceArray<float> residual;       ///< the scaled right-hand side
+    DeviceArray<float> damped_diagonal;
     DeviceArray<float> values;             ///< the scaled matrix
     DeviceArray<cl_float4> vertex_forces;  ///< poisoned, as the rest of the internal arrays
     DeviceArray<float> product, direction, direction_product, pressure;
@@ -52,6 +53,8 @@ struct Arrays {
     std::vector<double> of_cloth(const std::vector<float>& per_triangle, std::size_t cloth) const;
     /// One number a triangle for every cloth, as the kernels lay them out; 0 in the padding.
     std::vector<float> over_triangles(const std::function<double(std::size_t cloth, std::size_t a)>& value) const;
+    /// ‖r‖² in m⁴ of the scaled residual r̄ at hand.
+    double unscaled_squared(std::size_t cloth, const std::vector<double>& scaled) const;
     /// A kind's partial results of a cloth, one for each group.
     std::vector<double> partials_of(std::size_t cloth, int kind) const;
     void write_partials(std::size_t cloth, int kind, const std::vector<double>& values);

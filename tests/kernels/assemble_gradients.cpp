@@ -48,8 +48,7 @@ void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
     const double common_alpha = static_cast<double>(arrays.parameters.read()[0].regularization);
     for (std::size_t c = 0; c < arrays.cloth_count(); ++c) {
         const ScaledSolve& solve = arrays.solves[c];
-        std::vector<double> got, want, residual_scale;
-        double residual_squared = 0.0;
+        std::vector<double> got, want, residual_scale, areas;
         for (std::size_t a = 0; a < solve.scale.size(); ++a) {
             const cl_float8& g = gradients[arrays.adjacency.cloths[c].triangle_begin + a];
             const double alpha = alpha_per_triangle ? arrays.sources[c].regularization[a] : common_alpha;
@@ -62,21 +61,29 @@ void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
             CHECK(std::abs(static_cast<double>(g.s[3]) - (alpha - 1.0) / alpha) <= elementwise_tolerance(2));
             CHECK(std::abs(static_cast<double>(g.s[7]) - solve.scale[a]) <= elementwise_tolerance(12) * solve.scale[a]);
             residual_scale.push_back(solve.scale[a] * solve.geometry[a].area);
-            residual_squared += solve.right_hand_side[a] * solve.right_hand_side[a];
+            areas.push_back(solve.geometry[a].area);
         }
         // Edge, cross product, normal, cross product, scale: about thirty roundings.
         CHECK(difference(got, want) <= elementwise_tolerance(30) * norm(want));
         const double residual_error = elementwise_tolerance(20) * norm(residual_scale);
         CHECK(difference(arrays.of_cloth(residual, c), solve.right_hand_side) <= residual_error);
-        const double got_norm = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_RESIDUAL_EVEN)));
-        CHECK(std::abs(got_norm - std::sqrt(residual_squared)) <=
-              residual_error + sum_tolerance(2, solve.scale.size()) * got_norm);
+        const double scaled_norm = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_SCALED_RESIDUAL_EVEN)));
+        CHECK(std::abs(scaled_norm - norm(solve.right_hand_side)) <=
+              residual_error + sum_tolerance(2, solve.scale.size()) * scaled_norm);
+        // Unscaled, A − A⁰ of the triangles that can move: the error of an area, as above.
+        const double plain_norm = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_RESIDUAL_EVEN)));
+        const double expected = std::sqrt(arrays.unscaled_squared(c, solve.right_hand_side));
+        CHECK(std::abs(plain_norm - expected) <=
+              elementwise_tolerance(20) * norm(areas) + sum_tolerance(2, solve.scale.size()) * plain_norm);
+        CHECK(difference(arrays.of_cloth(arrays.damped_diagonal.read(), c), solve.damped_diagonal) <=
+              elementwise_tolerance(12) * norm(solve.damped_diagonal));
     }
 }
 
 void poison_outputs(Arrays& arrays) {
     arrays.gradients.write(poison<cl_float8>(arrays.gradients.size()));
     arrays.residual.write(poison<float>(arrays.residual.size()));
+    arrays.damped_diagonal.write(poison<float>(arrays.damped_diagonal.size()));
     arrays.partials.write(poison<float>(arrays.partials.size()));
 }
 

@@ -76,7 +76,7 @@ TEST_CASE("cg_update: two iterations by hand, awkward sizes in every work-group 
                 }
                 std::size_t c = 0;
                 arrays.edit_states([&](apsl_solve_state& state) {
-                    state.residual[slot] = static_cast<float>(gamma[c]);
+                    state.scaled_residual[slot] = static_cast<float>(gamma[c]);
                     ++c;
                 });
                 launch::cg_update(arrays, build, k);
@@ -93,10 +93,14 @@ TEST_CASE("cg_update: two iterations by hand, awkward sizes in every work-group 
                           elementwise_tolerance(roundings) * (norm(s[c]) + scale));
                     CHECK(difference(arrays.of_cloth(arrays.pressure.read(), c), y[c]) <=
                           elementwise_tolerance(roundings) * (norm(y[c]) + previous_step[c] * scale));
-                    const std::vector<double> parts = arrays.partials_of(c, APSL_PARTIAL_RESIDUAL_EVEN + (slot ^ 1));
                     const std::vector<double> left = arrays.of_cloth(arrays.residual.read(), c);
-                    CHECK(std::abs(std::accumulate(parts.begin(), parts.end(), 0.0) - dot(left, left)) <=
-                          sum_tolerance(2, left.size()) * dot(left, left));
+                    const auto check_sum = [&](int even_kind, double expected) {
+                        const std::vector<double> parts = arrays.partials_of(c, even_kind + (slot ^ 1));
+                        CHECK(std::abs(std::accumulate(parts.begin(), parts.end(), 0.0) - expected) <=
+                              sum_tolerance(3, left.size()) * expected);
+                    };
+                    check_sum(APSL_PARTIAL_SCALED_RESIDUAL_EVEN, dot(left, left));
+                    check_sum(APSL_PARTIAL_RESIDUAL_EVEN, arrays.unscaled_squared(c, left));
                     CHECK(arrays.stats.read()[c].cg_iterations == k + 1);
                     CHECK(arrays.states.read()[c].has_pressure == 1);
                     // On with the device's own numbers.
@@ -130,17 +134,19 @@ TEST_CASE("cg_update: a solve that has ended writes nothing and hands its residu
     Arrays arrays(cloths, Matrix::consistent, {}, 3);
     arrays.product.write(arrays.residual.read());
     arrays.write_partials(0, APSL_PARTIAL_RESIDUAL_EVEN, {1.0, 2.0, 3.0});
+    arrays.write_partials(0, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, {4.0, 5.0, 6.0});
     arrays.write_partials(0, APSL_PARTIAL_CURVATURE, {1.0, 1.0, 1.0});
     const std::vector<float> residual = arrays.residual.read();
     arrays.edit_states([](apsl_solve_state& state) {
         state.iterating = 0;
-        state.residual[0] = 6.0f;
+        state.scaled_residual[0] = 6.0f;
     });
     launch::cg_update(arrays, {}, 0);
     CHECK(same_bytes(residual, arrays.residual.read()));
     CHECK(same_bytes(arrays.pressure.read(), poison<float>(arrays.pressure.size())));
     CHECK(same_bytes(arrays.direction.read(), poison<float>(arrays.direction.size())));
     CHECK(arrays.partials_of(0, APSL_PARTIAL_RESIDUAL_ODD) == std::vector<double>{1.0, 2.0, 3.0});
+    CHECK(arrays.partials_of(0, APSL_PARTIAL_SCALED_RESIDUAL_ODD) == std::vector<double>{4.0, 5.0, 6.0});
     CHECK(arrays.states.read()[0].has_pressure == 0);
     CHECK(arrays.stats.read()[0].cg_iterations == 0);
 }
@@ -156,7 +162,7 @@ TEST_CASE("cg_update: no positive curvature, no step, then or later in the solve
         arrays.write_partial_sum(0, APSL_PARTIAL_CURVATURE, curvature);
         // A former solve's leavings, of any value.
         arrays.edit_states([](apsl_solve_state& state) {
-            state.residual[0] = state.residual[1] = 2.0f;
+            state.scaled_residual[0] = state.scaled_residual[1] = 2.0f;
             state.step[0] = state.step[1] = -3.0f;
         });
         for (int k = 0; k < 3; ++k) launch::cg_update(arrays, {}, k);

@@ -37,6 +37,7 @@ std::vector<double> random_numbers(std::size_t count, double low, double high, s
 struct ScaledSolve {
     std::vector<reference::TriangleGeometry<double>> geometry;
     std::vector<double> scale;             ///< s = 1/√(α D), 0 where D is
+    std::vector<double> damped_diagonal;   ///< α D
     std::vector<double> right_hand_side;   ///< s (A − A⁰)
     reference::SparseMatrix<double> rows;  ///< S (G + (α − 1) D) S
 };

@@ -74,8 +74,8 @@ void predict_positions(Arrays& a, const Build& build) {
 void assemble_gradients(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "assemble_gradients");
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients, a.residual,
-                  a.rest_areas, cl_ulong{a.array_offset}, build.alpha_per_triangle ? a.regularization : a.rest_areas,
-                  cl_ulong{a.array_offset});
+                  a.damped_diagonal, a.rest_areas, cl_ulong{a.array_offset},
+                  build.alpha_per_triangle ? a.regularization : a.rest_areas, cl_ulong{a.array_offset});
     run(k, a.groups, build, a.cloth_count());
 }
 
@@ -131,7 +131,7 @@ void matrix_free_apply_dot(Arrays& a, const Build& build, int iteration) {
 
 void cg_update(Arrays& a, const Build& build, int iteration) {
     const host::Kernel& k = kernel(a, build, "cg_update.cl", "cg_update");
-    set_arguments(k, 0, a.cloths, a.states, a.stats, a.partials, a.residual, a.product, a.direction,
+    set_arguments(k, 0, a.cloths, a.states, a.stats, a.partials, a.residual, a.damped_diagonal, a.product, a.direction,
                   a.direction_product, a.pressure, cl_int{iteration});
     run(k, a.groups, build, a.cloth_count());
 }
