@@ -49,11 +49,11 @@ System wavy_grid_system(std::uint32_t side, double alpha) {
     return system_of(cloth, Matrix::consistent, alpha);
 }
 
-/// √(rᵀD⁻¹r) over rows with D > 0.
+/// ‖r‖ over rows with D > 0.
 double norm(const System& system, const TriangleVector<double>& r) {
     double sum = 0.0;
     for (Eigen::Index a = 0; a < r.size(); ++a)
-        if (system.A.coeff(a, a) > 0.0) sum += r[a] * r[a] / system.A.coeff(a, a);
+        if (system.A.coeff(a, a) > 0.0) sum += r[a] * r[a];
     return std::sqrt(sum);
 }
 
