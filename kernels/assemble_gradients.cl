@@ -17,7 +17,7 @@ typedef struct {
     float area;         // m²
 } apsl_triangle_geometry;
 
-static inline apsl_triangle_geometry triangle_geometry(float4 x0, float4 x1, float4 x2) {
+static inline __attribute__((always_inline)) apsl_triangle_geometry triangle_geometry(float4 x0, float4 x1, float4 x2) {
     apsl_triangle_geometry t;
     t.e0 = x2 - x1;
     t.e1 = x0 - x2;
@@ -33,16 +33,17 @@ static inline apsl_triangle_geometry triangle_geometry(float4 x0, float4 x1, flo
 }
 
 // Eq. (3): D = ½ Σ w |e|², kg⁻¹ m².
-static inline float diagonal(apsl_triangle_geometry t) {
+static inline __attribute__((always_inline)) float diagonal(apsl_triangle_geometry t) {
     return 0.5f * (t.e0.w * dot3(t.e0, t.e0) + t.e1.w * dot3(t.e1, t.e1) + t.e2.w * dot3(t.e2, t.e2));
 }
 
 // s = 1/√(α D); 0 where nothing can move the triangle, which makes its pressure 0 by definition.
-static inline float jacobi_scale(float alpha, float d) {
+static inline __attribute__((always_inline)) float jacobi_scale(float alpha, float d) {
     return d == 0.0f ? 0.0f : 1.0f / sqrt(alpha * d);
 }
 
-static inline apsl_gradients scaled_gradients(apsl_triangle_geometry t, float alpha, float scale) {
+static inline __attribute__((always_inline)) apsl_gradients scaled_gradients(apsl_triangle_geometry t, float alpha,
+                                                                             float scale) {
     apsl_gradients g;
     g.g0_shift = scale * cross(t.normal, (float4)(t.e0.xyz, 0.0f));
     g.g1_scale = scale * cross(t.normal, (float4)(t.e1.xyz, 0.0f));
@@ -56,7 +57,8 @@ typedef struct {
     float max_change, squared_change, measured, not_finite;
 } apsl_area_sums;
 
-static inline void add_area(apsl_area_sums* sums, float area, float rest_area, bool finite) {
+static inline __attribute__((always_inline)) void add_area(apsl_area_sums* sums, float area, float rest_area,
+                                                           bool finite) {
     const bool has_rest_area = rest_area > 0.0f;
     const float change = has_rest_area ? fabs(area - rest_area) / rest_area : 0.0f;
     sums->max_change = fmax(sums->max_change, change);
@@ -65,15 +67,17 @@ static inline void add_area(apsl_area_sums* sums, float area, float rest_area, b
     sums->not_finite += finite && isfinite(rest_area) ? 0.0f : 1.0f;
 }
 
-static inline void store_area_partials(apsl_area_sums sums, __global float* partials, __local float* scratch) {
+static inline __attribute__((always_inline)) void store_area_partials(apsl_area_sums sums, __global float* partials,
+                                                                      __local float* scratch) {
     store_partial(partials, APSL_PARTIAL_MAX_CHANGE, group_max(sums.max_change, scratch));
     store_partial(partials, APSL_PARTIAL_SQUARED_CHANGE, group_sum(sums.squared_change, scratch));
     store_partial(partials, APSL_PARTIAL_MEASURED, group_sum(sums.measured, scratch));
     store_partial(partials, APSL_PARTIAL_NOT_FINITE, group_sum(sums.not_finite, scratch));
 }
 
-static inline apsl_triangle_geometry load_triangle(__global const uint* triangles, __global const float4* predicted,
-                                                   uint a) {
+static inline __attribute__((always_inline)) apsl_triangle_geometry load_triangle(__global const uint* triangles,
+                                                                                  __global const float4* predicted,
+                                                                                  uint a) {
     const uint3 v = vload3(a, triangles);
     return triangle_geometry(predicted[v.x], predicted[v.y], predicted[v.z]);
 }

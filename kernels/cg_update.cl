@@ -8,8 +8,9 @@
 // Chronopoulos and Gear: β = γ_k / γ_{k−1}, α = γ_k / (δ_k − β γ_k / α_{k−1}). Step 0 where the matrix shows no
 // curvature above rounding along the direction (α = 1 can bring that about): the solve then stays where it is, for
 // good, since a former step of 0 makes the denominator −∞.
-static inline float2 cg_coefficients(float residual, float curvature, float previous_residual, float previous_step,
-                                     int iteration) {
+static inline __attribute__((always_inline)) float2 cg_coefficients(float residual, float curvature,
+                                                                    float previous_residual, float previous_step,
+                                                                    int iteration) {
     const float beta = iteration == 0 ? 0.0f : residual / previous_residual;
     const float denominator = iteration == 0 ? curvature : curvature - beta * residual / previous_step;
     const float step = residual / denominator;
@@ -19,7 +20,8 @@ static inline float2 cg_coefficients(float residual, float curvature, float prev
 
 // Stores a partial sum for the next iteration. A solve that has ended hands its last one on, so that both slots hold
 // it.
-static inline void store_or_hand_on(__global float* partials, uint even_kind, uint slot, bool iterating, float sum) {
+static inline __attribute__((always_inline)) void store_or_hand_on(__global float* partials, uint even_kind, uint slot,
+                                                                   bool iterating, float sum) {
     const uint groups = (uint)get_num_groups(0), group = (uint)get_group_id(0);
     const float last = partials_of(partials, even_kind + slot, groups)[group];
     partials_of(partials, even_kind + (slot ^ 1u), groups)[group] = iterating ? sum : last;

@@ -14,13 +14,13 @@ typedef struct {
 } apsl_gradients;
 
 // Gradient at a corner; w is zero.
-static inline float4 corner_gradient(apsl_gradients g, uint corner) {
+static inline __attribute__((always_inline)) float4 corner_gradient(apsl_gradients g, uint corner) {
     const float4 g0 = (float4)(g.g0_shift.xyz, 0.0f);
     const float4 g1 = (float4)(g.g1_scale.xyz, 0.0f);
     return corner == 0u ? g0 : corner == 1u ? g1 : -(g0 + g1);
 }
 
-static inline float dot3(float4 a, float4 b) {
+static inline __attribute__((always_inline)) float dot3(float4 a, float4 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 

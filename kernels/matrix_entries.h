@@ -14,7 +14,8 @@
 
 #if APSL_MATRIX == APSL_CONSISTENT
 // ½ Σ_{i ∈ a∩c} w_i ĝ_{a,i} · ĝ_{c,i}; w holds the inverse masses of a's corners.
-static inline float off_diagonal_entry(apsl_gradients ga, apsl_gradients gc, float4 w, uint shared, float4 opposite_w) {
+static inline __attribute__((always_inline)) float off_diagonal_entry(apsl_gradients ga, apsl_gradients gc, float4 w,
+                                                                      uint shared, float4 opposite_w) {
     (void)opposite_w;
     const float weight[3] = {w.x, w.y, w.z};
     float sum = 0.0f;
@@ -26,7 +27,7 @@ static inline float off_diagonal_entry(apsl_gradients ga, apsl_gradients gc, flo
 }
 #else
 // g_0 × g_1 = 2A n, and scaling by s > 0 keeps the direction.
-static inline float4 unit_normal(apsl_gradients g) {
+static inline __attribute__((always_inline)) float4 unit_normal(apsl_gradients g) {
     const float4 n = cross((float4)(g.g0_shift.xyz, 0.0f), (float4)(g.g1_scale.xyz, 0.0f));
     const float length_of_n = sqrt(dot3(n, n));
     return length_of_n > 0.0f ? n / length_of_n : (float4)(0.0f);
@@ -34,7 +35,8 @@ static inline float4 unit_normal(apsl_gradients g) {
 
 // Eq. (4): ½ √(w w') (n_a·n_c) |e|² over shared edges, with the inverse masses of the two vertices opposite the edge;
 // |e|² comes scaled as |ĝ_a| |ĝ_c|. opposite_w holds the inverse masses of c's corners.
-static inline float off_diagonal_entry(apsl_gradients ga, apsl_gradients gc, float4 w, uint shared, float4 opposite_w) {
+static inline __attribute__((always_inline)) float off_diagonal_entry(apsl_gradients ga, apsl_gradients gc, float4 w,
+                                                                      uint shared, float4 opposite_w) {
     const float weight[3] = {w.x, w.y, w.z};
     const float opposite_weight[3] = {opposite_w.x, opposite_w.y, opposite_w.z};
     float sum = 0.0f;
@@ -51,20 +53,23 @@ static inline float off_diagonal_entry(apsl_gradients ga, apsl_gradients gc, flo
 #endif
 
 // ½ Σ w |ĝ|² + (α − 1)/α: 1 up to rounding, and (α − 1)/α where nothing moves the triangle.
-static inline float diagonal_entry(apsl_gradients g, float4 w) {
+static inline __attribute__((always_inline)) float diagonal_entry(apsl_gradients g, float4 w) {
     const float4 g0 = corner_gradient(g, 0), g1 = corner_gradient(g, 1), g2 = corner_gradient(g, 2);
     return 0.5f * (w.x * dot3(g0, g0) + w.y * dot3(g1, g1) + w.z * dot3(g2, g2)) + g.g0_shift.w;
 }
 
-static inline float4 corner_inverse_masses(__global const uint* triangles, __global const float4* predicted, uint a) {
+static inline __attribute__((always_inline)) float4 corner_inverse_masses(__global const uint* triangles,
+                                                                          __global const float4* predicted, uint a) {
     const uint3 v = vload3(a, triangles);
     return (float4)(predicted[v.x].w, predicted[v.y].w, predicted[v.z].w, 0.0f);
 }
 
 // One entry of row a, whose own gradients and inverse masses are at hand.
-static inline float matrix_entry(__global const uint* triangles, __global const float4* predicted,
-                                 __global const apsl_gradients* gradients, uint a, apsl_gradients ga, float4 wa,
-                                 uint column, uint shared) {
+static inline __attribute__((always_inline)) float matrix_entry(__global const uint* triangles,
+                                                                __global const float4* predicted,
+                                                                __global const apsl_gradients* gradients, uint a,
+                                                                apsl_gradients ga, float4 wa, uint column,
+                                                                uint shared) {
     if (column == a) return diagonal_entry(ga, wa);
 #if APSL_MATRIX == APSL_PRINTED
     const float4 wc = corner_inverse_masses(triangles, predicted, column);

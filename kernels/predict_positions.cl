@@ -12,15 +12,16 @@
 #endif
 
 // Explicitly fused, so that update_velocities finds the same bits again whatever the compiler contracts.
-static inline float4 predicted_position(float4 position, float4 velocity, float time_step) {
+static inline __attribute__((always_inline)) float4 predicted_position(float4 position, float4 velocity,
+                                                                       float time_step) {
     return fma((float4)(time_step), velocity, position);
 }
 
-static inline float4 load_position(__global const float* positions, uint vertex) {
+static inline __attribute__((always_inline)) float4 load_position(__global const float* positions, uint vertex) {
     return (float4)(vload3(0, positions + (ulong)vertex * APSL_POSITION_STRIDE), 0.0f);
 }
 
-static inline float4 load_velocity(__global const float* velocities, uint vertex) {
+static inline __attribute__((always_inline)) float4 load_velocity(__global const float* velocities, uint vertex) {
     return (float4)(vload3(0, velocities + (ulong)vertex * APSL_VELOCITY_STRIDE), 0.0f);
 }
 

@@ -4,7 +4,8 @@
 #include "work_group.h"
 
 // Area change over all triangles from the groups' partial results: greatest, and root of the mean square.
-static inline float2 area_change(__global float* partials, uint groups, __local float* scratch) {
+static inline __attribute__((always_inline)) float2 area_change(__global float* partials, uint groups,
+                                                                __local float* scratch) {
     const float greatest = max_partials(partials, APSL_PARTIAL_MAX_CHANGE, groups, scratch);
     const float squared = sum_partials(partials, APSL_PARTIAL_SQUARED_CHANGE, groups, scratch);
     const float measured = sum_partials(partials, APSL_PARTIAL_MEASURED, groups, scratch);

@@ -8,8 +8,10 @@
 #include "layout.h"
 
 // Σ_{a∋i} values_a ĝ_{a,i}; w is zero.
-static inline float4 sum_over_corners(__global const uint* corner_offsets, __global const uint* corners,
-                                      __global const apsl_gradients* gradients, __global const float* values, uint i) {
+static inline __attribute__((always_inline)) float4 sum_over_corners(__global const uint* corner_offsets,
+                                                                     __global const uint* corners,
+                                                                     __global const apsl_gradients* gradients,
+                                                                     __global const float* values, uint i) {
     float4 sum = (float4)(0.0f);
     const uint end = corner_offsets[i + 1];
     for (uint n = corner_offsets[i]; n < end; ++n) {

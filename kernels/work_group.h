@@ -4,6 +4,9 @@
 // A launch has get_num_groups(0) work-groups for every cloth, and the cloths along dimension 1. Each group owns one
 // contiguous chunk; its work-items stride through it. With one work-item a group (what suits a CPU) that is a plain
 // loop; with many it is coalesced. Nothing depends on how many work-items run in lockstep.
+//
+// Every helper is always_inline: pocl 3.1 keeps group and local ids in variables that all its threads share, and only
+// what is inlined into the kernel reads the thread's own. A helper it left as a call mixed cloths up now and then.
 #ifndef APSL_WORK_GROUP_H
 #define APSL_WORK_GROUP_H
 
@@ -21,7 +24,7 @@ typedef struct {
 
 // This work-item's share of `count` elements, or nothing where the launch has nothing to do. Chunks begin at multiples
 // of 16 elements. An empty range, not an early return: barriers follow.
-static inline apsl_range share_of(uint count, bool active) {
+static inline __attribute__((always_inline)) apsl_range share_of(uint count, bool active) {
     const uint groups = (uint)get_num_groups(0);
     const uint chunk = ((count + groups - 1u) / groups + 15u) & ~15u;
     const uint begin = min((uint)get_group_id(0) * chunk, count);
@@ -38,7 +41,7 @@ static inline apsl_range share_of(uint count, bool active) {
 #endif
 
 // Sum over the work-group, given to every work-item. Halving, over a power of two fixed at compile time.
-static inline float group_sum(float value, __local float* scratch) {
+static inline __attribute__((always_inline)) float group_sum(float value, __local float* scratch) {
 #if APSL_WORK_GROUP_SIZE > 1
     const uint l = (uint)get_local_id(0);
     scratch[l] = value;
@@ -54,7 +57,7 @@ static inline float group_sum(float value, __local float* scratch) {
 }
 
 // Greatest over the work-group, given to every work-item.
-static inline float group_max(float value, __local float* scratch) {
+static inline __attribute__((always_inline)) float group_max(float value, __local float* scratch) {
 #if APSL_WORK_GROUP_SIZE > 1
     const uint l = (uint)get_local_id(0);
     scratch[l] = value;
@@ -70,19 +73,22 @@ static inline float group_max(float value, __local float* scratch) {
 }
 
 // The partial results of one kind, one float for each of `groups` groups, of the cloth of this work-group.
-static inline __global float* partials_of(__global float* partials, uint kind, uint groups) {
+static inline __attribute__((always_inline)) __global float* partials_of(__global float* partials, uint kind,
+                                                                         uint groups) {
     return partials + ((uint)get_group_id(1) * APSL_PARTIAL_KINDS + kind) * groups;
 }
 
 // Sum of a kind's partial results. Every group does it anew: cheaper than a launch in between.
-static inline float sum_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
+static inline __attribute__((always_inline)) float sum_partials(__global float* partials, uint kind, uint groups,
+                                                                __local float* scratch) {
     __global const float* p = partials_of(partials, kind, groups);
     float sum = 0.0f;
     for (uint g = (uint)get_local_id(0); g < groups; g += APSL_WORK_GROUP_SIZE) sum += p[g];
     return group_sum(sum, scratch);
 }
 
-static inline float max_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
+static inline __attribute__((always_inline)) float max_partials(__global float* partials, uint kind, uint groups,
+                                                                __local float* scratch) {
     __global const float* p = partials_of(partials, kind, groups);
     float greatest = 0.0f;
     for (uint g = (uint)get_local_id(0); g < groups; g += APSL_WORK_GROUP_SIZE) greatest = fmax(greatest, p[g]);
@@ -90,7 +96,7 @@ static inline float max_partials(__global float* partials, uint kind, uint group
 }
 
 // Stores this group's partial result.
-static inline void store_partial(__global float* partials, uint kind, float value) {
+static inline __attribute__((always_inline)) void store_partial(__global float* partials, uint kind, float value) {
     if (get_local_id(0) == 0) partials_of(partials, kind, (uint)get_num_groups(0))[get_group_id(0)] = value;
 }
 
