@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "limiter_plan.hpp"
 
+#include "patches.hpp"
+
 #include <apsl/error.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace apsl::host {
@@ -17,19 +20,66 @@ std::uint32_t index(std::size_t value, std::size_t limit, const char* what) {
 
 constexpr std::size_t max_index = std::numeric_limits<std::uint32_t>::max();
 
-void append_pattern(Adjacency& out, const Topology& topology, Matrix matrix, const apsl_cloth& cloth) {
+// Where each vertex and triangle of a topology is placed.
+struct Places {
+    std::vector<std::uint32_t> of_vertex, of_triangle;
+};
+
+std::vector<std::uint32_t> inverse(const std::vector<std::uint32_t>& order) {
+    std::vector<std::uint32_t> places(order.size());
+    for (std::uint32_t place = 0; place < order.size(); ++place) places[order[place]] = place;
+    return places;
+}
+
+void append_pattern(Adjacency& out, const Topology& topology, const Patches& patches, const Places& places,
+                    Matrix matrix, const apsl_cloth& cloth) {
     const CsrPattern pattern = topology.csr_pattern(matrix);
-    const std::size_t first_entry = out.columns.size();
-    index(first_entry + pattern.columns.size(), max_index, "matrix entries");
-    for (std::size_t a = 0; a < topology.triangle_count(); ++a)
-        out.row_offsets.push_back(static_cast<std::uint32_t>(first_entry + pattern.row_offsets[a + 1]));
-    for (const std::uint32_t column : pattern.columns) out.columns.push_back(cloth.triangle_begin + column);
-    out.shared.insert(out.shared.end(), pattern.shared.begin(), pattern.shared.end());
+    index(out.columns.size() + pattern.columns.size(), max_index, "matrix entries");
+    for (const std::uint32_t triangle : patches.triangle_order) {
+        for (std::uint32_t e = pattern.row_offsets[triangle]; e < pattern.row_offsets[triangle + 1]; ++e) {
+            out.columns.push_back(cloth.triangle_begin + places.of_triangle[pattern.columns[e]]);
+            out.shared.push_back(pattern.shared[e]);
+        }
+        out.row_offsets.push_back(static_cast<std::uint32_t>(out.columns.size()));
+    }
+}
+
+void append_patches(Adjacency& out, const Patches& patches, const apsl_cloth& cloth) {
+    std::vector<std::uint32_t> local(cloth.vertex_count, 0), seen(cloth.vertex_count, max_index);
+    for (std::uint32_t patch = 0; patch + 1 < patches.patch_offsets.size(); ++patch) {
+        const auto first_vertex = static_cast<std::uint32_t>(out.patch_vertices.size());
+        out.patches.push_back({{cloth.triangle_begin + patches.patch_offsets[patch], first_vertex}});
+        for (std::uint32_t t = patches.patch_offsets[patch]; t < patches.patch_offsets[patch + 1]; ++t)
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = out.triangles[3 * (cloth.triangle_begin + t) + k];
+                if (seen[vertex - cloth.vertex_begin] == patch) continue;
+                seen[vertex - cloth.vertex_begin] = patch;
+                out.patch_vertices.push_back(vertex);
+            }
+        // Vertices of like valence together: the gather's inner loop then ends where the processor expects it to.
+        const auto valence = [&](std::uint32_t vertex) {
+            return out.corner_offsets[vertex + 1] - out.corner_offsets[vertex];
+        };
+        std::stable_sort(out.patch_vertices.begin() + first_vertex, out.patch_vertices.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return valence(a) < valence(b); });
+        for (std::uint32_t n = first_vertex; n < out.patch_vertices.size(); ++n)
+            local[out.patch_vertices[n] - cloth.vertex_begin] = n - first_vertex;
+        for (std::uint32_t t = patches.patch_offsets[patch]; t < patches.patch_offsets[patch + 1]; ++t)
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::uint32_t n = 3 * (cloth.triangle_begin + t) + k;
+                out.local_triangles[n] = static_cast<std::uint16_t>(local[out.triangles[n] - cloth.vertex_begin]);
+            }
+        out.max_patch_vertices =
+            std::max(out.max_patch_vertices, static_cast<std::uint32_t>(out.patch_vertices.size()) - first_vertex);
+    }
+    out.patches.push_back(
+        {{cloth.triangle_begin + cloth.triangle_count, static_cast<std::uint32_t>(out.patch_vertices.size())}});
 }
 
 }  // namespace
 
-Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloths, Matrix matrix, bool with_pattern) {
+Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloths, Matrix matrix, bool with_pattern,
+                          std::uint32_t patch_triangles) {
     Adjacency out;
     out.corner_offsets.push_back(0);
     if (with_pattern) out.row_offsets.push_back(0);
@@ -41,25 +91,40 @@ Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloth
         // Two bits of a corner hold its number.
         cloth.triangle_begin = index(triangles, max_index / 4, "triangles");
         cloth.triangle_count = index(topology->triangle_count(), max_index / 4, "triangles");
-        cloth.rest_area_begin = index(rest_areas, max_index, "triangles");
-        out.cloths.push_back(cloth);
+        const auto first_rest_area = index(rest_areas, max_index, "triangles");
 
-        for (const Triangle& triangle : topology->triangles())
-            for (const std::uint32_t vertex : triangle) out.triangles.push_back(cloth.vertex_begin + vertex);
-        const std::size_t first_corner = out.corners.size();
-        for (std::size_t v = 0; v < topology->vertex_count(); ++v)
-            out.corner_offsets.push_back(static_cast<std::uint32_t>(first_corner + topology->corner_offsets()[v + 1]));
-        for (const Corner corner : topology->corners())
-            out.corners.push_back(4 * (cloth.triangle_begin + corner / 3) + corner % 3);
-        if (with_pattern) append_pattern(out, *topology, matrix, cloth);
+        const Patches patches = build_patches(*topology, patch_triangles);
+        const Places places{inverse(patches.vertex_order), inverse(patches.triangle_order)};
+        for (const std::uint32_t vertex : patches.vertex_order) {
+            out.vertex_order.push_back(cloth.vertex_begin + vertex);
+            const auto corners =
+                topology->corners().subspan(topology->corner_offsets()[vertex], topology->corner_offsets()[vertex + 1] -
+                                                                                    topology->corner_offsets()[vertex]);
+            for (const Corner corner : corners)
+                out.corners.push_back(4 * (cloth.triangle_begin + places.of_triangle[corner / 3]) + corner % 3);
+            out.corner_offsets.push_back(static_cast<std::uint32_t>(out.corners.size()));
+        }
+        for (const std::uint32_t triangle : patches.triangle_order) {
+            out.triangle_order.push_back(first_rest_area + triangle);
+            for (const std::uint32_t vertex : topology->triangles()[triangle])
+                out.triangles.push_back(cloth.vertex_begin + places.of_vertex[vertex]);
+        }
+        if (with_pattern) append_pattern(out, *topology, patches, places, matrix, cloth);
 
         vertices += topology->vertex_count();
         rest_areas += topology->triangle_count();
         triangles += topology->triangle_count();
         constexpr std::size_t alignment = APSL_TRIANGLE_ALIGNMENT;
         triangles = (triangles + alignment - 1) / alignment * alignment;
-        out.triangles.resize(3 * triangles, 0);
+        // Padding names a vertex of the cloth itself, so that it is as finite as the cloth.
+        out.triangles.resize(3 * triangles, cloth.vertex_begin);
+        out.triangle_order.resize(triangles, 0);
+        out.local_triangles.resize(3 * triangles, 0);
         if (with_pattern) out.row_offsets.resize(triangles + 1, out.row_offsets.back());
+        cloth.patch_begin = static_cast<apsl_uint>(out.patches.size());
+        append_patches(out, patches, cloth);
+        cloth.patch_count = static_cast<apsl_uint>(out.patches.size()) - cloth.patch_begin - 1;
+        out.cloths.push_back(cloth);
     }
     out.vertex_count = index(vertices, max_index, "vertices");
     out.triangle_count = index(triangles, max_index / 4, "triangles");

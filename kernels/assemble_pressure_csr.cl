@@ -17,10 +17,8 @@ APSL_KERNEL void assemble_pressure_csr(__global const apsl_cloth* cloths, __glob
     const apsl_range range = share_of(cloth.triangle_count, !states[c].stopped);
     for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
-        const apsl_gradients ga = gradients[a];
-        const float4 wa = corner_inverse_masses(triangles, predicted, a);
         const uint end = row_offsets[a + 1];
         for (uint e = row_offsets[a]; e < end; ++e)
-            values[e] = matrix_entry(triangles, predicted, gradients, a, ga, wa, columns[e], shared[e]);
+            values[e] = matrix_entry(triangles, predicted, gradients, a, columns[e], shared[e]);
     }
 }

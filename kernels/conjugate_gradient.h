@@ -15,10 +15,8 @@
 
 // True where iteration k has work to do: every group finds it out from the same partial sums, and the first group
 // publishes it, with γ_k, for the launches that follow.
-static inline __attribute__((always_inline)) bool begin_iteration(__global const apsl_parameters* parameters,
-                                                                  __global apsl_solve_state* states,
-                                                                  __global float* partials, int iteration,
-                                                                  __local float* scratch) {
+APSL_INLINE bool begin_iteration(__global const apsl_parameters* parameters, __global apsl_solve_state* states,
+                                 __global float* partials, int iteration, __local float* scratch) {
     const uint c = (uint)get_group_id(1);
     const uint slot = (uint)iteration & 1u;
     const uint groups = (uint)get_num_groups(0);

@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: MIT
 // The scaled corner gradients of a triangle and how they are stored.
 //
-// g_k = n × e_k with e_k the edge opposite corner k, so ∂A/∂x_k = ½ g_k. Stored times s = 1/√(α D), D = diag(G):
-// in the unknown y = λ / s the damped matrix has a diagonal of ones, and plain CG on it is Jacobi-preconditioned CG on
-// G. The three gradients of a triangle sum to zero, so two are kept.
+// g_k = n × e_k with e_k the edge opposite corner k, so ∂A/∂x_k = ½ g_k. Stored is ḡ_k = √(w_k / 2) g_k / √(α D), with
+// D = diag(G): the damped matrix in the unknown y = λ √(α D) is then A = J̄ J̄ᵀ + diag((α − 1)/α), its diagonal is all
+// ones, and plain CG on it is Jacobi-preconditioned CG on G.
+//
+// Σ_k |ḡ_k|² = 1/α ≤ 1, whatever the units of the scene, so that 16-bit fixed point holds a component to 1.5e-5.
 #ifndef APSL_GRADIENTS_H
 #define APSL_GRADIENTS_H
 
-// 32 bytes a triangle: scaled g_0, (α − 1)/α; scaled g_1, s.
+#include "layout.h"
+
+// 32 bytes a triangle. Corner n's gradient is entry n of the array taken as short4, n = 4 · triangle + corner number.
 typedef struct {
-    float4 g0_shift;
-    float4 g1_scale;
+    short4 corner[3];  // w is zero
+    float shift;       // (α − 1)/α
+    float unused;
 } apsl_gradients;
 
-// Gradient at a corner; w is zero.
-static inline __attribute__((always_inline)) float4 corner_gradient(apsl_gradients g, uint corner) {
-    const float4 g0 = (float4)(g.g0_shift.xyz, 0.0f);
-    const float4 g1 = (float4)(g.g1_scale.xyz, 0.0f);
-    return corner == 0u ? g0 : corner == 1u ? g1 : -(g0 + g1);
+#define APSL_GRADIENT_UNIT (1.0f / 32767.0f)
+
+// In units of APSL_GRADIENT_UNIT; w is zero.
+APSL_INLINE float4 corner_gradient(__global const apsl_gradients* gradients, uint corner) {
+    return convert_float4(((__global const short4*)gradients)[corner]);
 }
 
-static inline __attribute__((always_inline)) float dot3(float4 a, float4 b) {
+APSL_INLINE float dot3(float4 a, float4 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 

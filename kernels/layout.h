@@ -6,6 +6,10 @@
 #ifdef __OPENCL_C_VERSION__
 typedef uint apsl_uint;
 typedef int apsl_int;
+
+// Every helper of a kernel is inlined: pocl 3.1 keeps group and local ids in variables that its threads share, and only
+// what is inlined into the kernel is sure to read the thread's own.
+#define APSL_INLINE static inline __attribute__((always_inline))
 #else
 #include <cstdint>
 typedef std::uint32_t apsl_uint;
@@ -18,8 +22,9 @@ typedef struct {
     apsl_uint vertex_count;
     apsl_uint triangle_begin;  // in the limiter's arrays: a multiple of APSL_TRIANGLE_ALIGNMENT
     apsl_uint triangle_count;
-    apsl_uint rest_area_begin;  // in the caller's arrays over triangles, which have no gaps
-    apsl_uint padding[3];
+    apsl_uint patch_begin;
+    apsl_uint patch_count;
+    apsl_uint padding[2];
 } apsl_cloth;
 
 // One cloth's apsl::Parameters for the current call.
@@ -31,8 +36,14 @@ typedef struct {
     float tolerance_squared;
     apsl_int sub_steps;
     apsl_int max_iterations;
-    apsl_int padding;
+    apsl_int adaptive_iterations;  // 0: α stays as given
 } apsl_parameters;
+
+// Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.
+#define APSL_PARAMETER_BLOCK 24
+typedef struct {
+    apsl_parameters entry[APSL_PARAMETER_BLOCK];
+} apsl_parameter_block;
 
 // apsl::Stats, written by the device.
 typedef struct {
@@ -50,12 +61,13 @@ typedef struct {
 
 // Where a cloth's solve stands. Each field is written by one work-group in a launch that does not read it elsewhere.
 typedef struct {
-    apsl_int stopped;          // no further sub-step in this call
-    apsl_int iterating;        // this CG iteration does its work
-    float initial_residual;    // ‖b‖², m⁴
-    float scaled_residual[2];  // γ = r̄·r̄ with r̄ = r/√(α diag G), of even and of odd iterations
-    float step[2];             // CG step length, of even and of odd iterations
-    apsl_int has_pressure;     // the solve has done an iteration
+    apsl_int stopped;           // no further sub-step in this call
+    apsl_int iterating;         // this CG iteration does its work
+    float initial_residual;     // ‖b‖², m⁴
+    float scaled_residual[2];   // γ = r̄·r̄ with r̄ = r/√(α diag G), of even and of odd iterations
+    float step[2];              // CG step length, of even and of odd iterations
+    apsl_int solve_iterations;  // done in the present solve; at 0 there is no pressure to read
+    float adaptive_factor;      // ≥ 1, multiplies α − 1; outlives the call
 } apsl_solve_state;
 
 // Partial results of the work-groups of a launch, one float a group for each of these.

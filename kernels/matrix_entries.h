@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Entries of the scaled matrix, from scaled gradients. `shared` says how two triangles meet: two bits for each corner
-// of the first, holding the matching corner of the second, 3 where there is none (apsl::CsrPattern::shared).
+// Entries of the scaled matrix. `shared` says how two triangles meet: two bits for each corner of the first, holding
+// the matching corner of the second, 3 where there is none (apsl::CsrPattern::shared).
 #ifndef APSL_MATRIX_ENTRIES_H
 #define APSL_MATRIX_ENTRIES_H
 
-#include "gradients.h"
+#include "layout.h"
 
 #define APSL_CONSISTENT 0
 #define APSL_PRINTED 1
@@ -12,73 +12,66 @@
 #define APSL_MATRIX APSL_CONSISTENT
 #endif
 
+APSL_INLINE uint matching_corner(uint shared, uint k) {
+    return (shared >> (2u * k)) & 3u;
+}
+
+APSL_INLINE float4 gradient_at(__global const apsl_gradients* gradients, uint a, uint corner) {
+    return corner_gradient(gradients, 4u * a + corner) * APSL_GRADIENT_UNIT;
+}
+
 #if APSL_MATRIX == APSL_CONSISTENT
-// ½ Σ_{i ∈ a∩c} w_i ĝ_{a,i} · ĝ_{c,i}; w holds the inverse masses of a's corners.
-static inline __attribute__((always_inline)) float off_diagonal_entry(apsl_gradients ga, apsl_gradients gc, float4 w,
-                                                                      uint shared, float4 opposite_w) {
-    (void)opposite_w;
-    const float weight[3] = {w.x, w.y, w.z};
+// ½ Σ_{i ∈ a∩c} w_i g_{a,i} · g_{c,i}, scaled: Σ ḡ_{a,i} · ḡ_{c,i}.
+APSL_INLINE float off_diagonal_entry(__global const uint* triangles, __global const float4* predicted,
+                                     __global const apsl_gradients* gradients, uint a, uint c, uint shared) {
+    (void)triangles;
+    (void)predicted;
     float sum = 0.0f;
     for (uint k = 0; k < 3; ++k) {
-        const uint m = (shared >> (2u * k)) & 3u;
-        if (m != 3u) sum += weight[k] * dot3(corner_gradient(ga, k), corner_gradient(gc, m));
+        const uint m = matching_corner(shared, k);
+        if (m != 3u) sum += dot3(gradient_at(gradients, a, k), gradient_at(gradients, c, m));
     }
-    return 0.5f * sum;
+    return sum;
 }
 #else
-// g_0 × g_1 = 2A n, and scaling by s > 0 keeps the direction.
-static inline __attribute__((always_inline)) float4 unit_normal(apsl_gradients g) {
-    const float4 n = cross((float4)(g.g0_shift.xyz, 0.0f), (float4)(g.g1_scale.xyz, 0.0f));
+APSL_INLINE float4 unit_normal(__global const uint* triangles, __global const float4* predicted, uint a) {
+    const uint3 v = vload3(a, triangles);
+    float4 n = cross(predicted[v.y] - predicted[v.x], predicted[v.z] - predicted[v.x]);
+    n.w = 0.0f;
     const float length_of_n = sqrt(dot3(n, n));
     return length_of_n > 0.0f ? n / length_of_n : (float4)(0.0f);
 }
 
-// Eq. (4): ½ √(w w') (n_a·n_c) |e|² over shared edges, with the inverse masses of the two vertices opposite the edge;
-// |e|² comes scaled as |ĝ_a| |ĝ_c|. opposite_w holds the inverse masses of c's corners.
-static inline __attribute__((always_inline)) float off_diagonal_entry(apsl_gradients ga, apsl_gradients gc, float4 w,
-                                                                      uint shared, float4 opposite_w) {
-    const float weight[3] = {w.x, w.y, w.z};
-    const float opposite_weight[3] = {opposite_w.x, opposite_w.y, opposite_w.z};
+// Eq. (4): ½ √(w w') (n_a·n_c) |e|² over shared edges, with the inverse masses of the two vertices opposite the edge.
+// Scaled that is (n_a·n_c) |ḡ_a| |ḡ_c|.
+APSL_INLINE float off_diagonal_entry(__global const uint* triangles, __global const float4* predicted,
+                                     __global const apsl_gradients* gradients, uint a, uint c, uint shared) {
     float sum = 0.0f;
     for (uint k = 0; k < 3; ++k) {
-        const uint m = (shared >> (2u * k)) & 3u;
+        const uint m = matching_corner(shared, k);
         if (m != 3u) {
-            const float4 gk = corner_gradient(ga, k);
-            const float4 gm = corner_gradient(gc, m);
-            sum += sqrt(weight[k] * opposite_weight[m]) * sqrt(dot3(gk, gk)) * sqrt(dot3(gm, gm));
+            const float4 ga = gradient_at(gradients, a, k), gc = gradient_at(gradients, c, m);
+            sum += sqrt(dot3(ga, ga) * dot3(gc, gc));
         }
     }
-    return 0.5f * sum * dot3(unit_normal(ga), unit_normal(gc));
+    return sum * dot3(unit_normal(triangles, predicted, a), unit_normal(triangles, predicted, c));
 }
 #endif
 
-// ½ Σ w |ĝ|² + (α − 1)/α: 1 up to rounding, and (α − 1)/α where nothing moves the triangle.
-static inline __attribute__((always_inline)) float diagonal_entry(apsl_gradients g, float4 w) {
-    const float4 g0 = corner_gradient(g, 0), g1 = corner_gradient(g, 1), g2 = corner_gradient(g, 2);
-    return 0.5f * (w.x * dot3(g0, g0) + w.y * dot3(g1, g1) + w.z * dot3(g2, g2)) + g.g0_shift.w;
+// Σ |ḡ|² + (α − 1)/α: 1 up to rounding, and (α − 1)/α where nothing moves the triangle.
+APSL_INLINE float diagonal_entry(__global const apsl_gradients* gradients, uint a) {
+    float sum = gradients[a].shift;
+    for (uint k = 0; k < 3; ++k) {
+        const float4 g = gradient_at(gradients, a, k);
+        sum += dot3(g, g);
+    }
+    return sum;
 }
 
-static inline __attribute__((always_inline)) float4 corner_inverse_masses(__global const uint* triangles,
-                                                                          __global const float4* predicted, uint a) {
-    const uint3 v = vload3(a, triangles);
-    return (float4)(predicted[v.x].w, predicted[v.y].w, predicted[v.z].w, 0.0f);
-}
-
-// One entry of row a, whose own gradients and inverse masses are at hand.
-static inline __attribute__((always_inline)) float matrix_entry(__global const uint* triangles,
-                                                                __global const float4* predicted,
-                                                                __global const apsl_gradients* gradients, uint a,
-                                                                apsl_gradients ga, float4 wa, uint column,
-                                                                uint shared) {
-    if (column == a) return diagonal_entry(ga, wa);
-#if APSL_MATRIX == APSL_PRINTED
-    const float4 wc = corner_inverse_masses(triangles, predicted, column);
-#else
-    (void)triangles;
-    (void)predicted;
-    const float4 wc = wa;
-#endif
-    return off_diagonal_entry(ga, gradients[column], wa, shared, wc);
+APSL_INLINE float matrix_entry(__global const uint* triangles, __global const float4* predicted,
+                               __global const apsl_gradients* gradients, uint row, uint column, uint shared) {
+    return column == row ? diagonal_entry(gradients, row)
+                         : off_diagonal_entry(triangles, predicted, gradients, row, column, shared);
 }
 
 #endif

@@ -22,12 +22,10 @@ APSL_KERNEL void matrix_free_apply_dot(__global const apsl_cloth* cloths, __glob
     float curvature = 0.0f;
     for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
-        const apsl_gradients ga = gradients[a];
-        const float4 wa = corner_inverse_masses(triangles, predicted, a);
         const uint end = row_offsets[a + 1];
         float q = 0.0f;
         for (uint e = row_offsets[a]; e < end; ++e)
-            q += matrix_entry(triangles, predicted, gradients, a, ga, wa, columns[e], shared[e]) * residual[columns[e]];
+            q += matrix_entry(triangles, predicted, gradients, a, columns[e], shared[e]) * residual[columns[e]];
         product[a] = q;
         curvature += residual[a] * q;
     }

@@ -4,8 +4,7 @@
 #include "work_group.h"
 
 // Area change over all triangles from the groups' partial results: greatest, and root of the mean square.
-static inline __attribute__((always_inline)) float2 area_change(__global float* partials, uint groups,
-                                                                __local float* scratch) {
+APSL_INLINE float2 area_change(__global float* partials, uint groups, __local float* scratch) {
     const float greatest = max_partials(partials, APSL_PARTIAL_MAX_CHANGE, groups, scratch);
     const float squared = sum_partials(partials, APSL_PARTIAL_SQUARED_CHANGE, groups, scratch);
     const float measured = sum_partials(partials, APSL_PARTIAL_MEASURED, groups, scratch);
@@ -26,7 +25,7 @@ APSL_KERNEL void begin_solve(__global const apsl_parameters* parameters, __globa
     if (broken || sub_step >= parameters[c].sub_steps || greatest <= parameters[c].target_area_change) {
         states[c].stopped = 1;
     } else {
-        states[c].has_pressure = 0;
+        states[c].solve_iterations = 0;
         states[c].initial_residual = residual;
         stats[c].sub_steps += 1;
     }

@@ -7,19 +7,16 @@
 #include "gradients.h"
 #include "layout.h"
 
-// Σ_{a∋i} values_a ĝ_{a,i}; w is zero.
-static inline __attribute__((always_inline)) float4 sum_over_corners(__global const uint* corner_offsets,
-                                                                     __global const uint* corners,
-                                                                     __global const apsl_gradients* gradients,
-                                                                     __global const float* values, uint i) {
+// Σ_{a∋i} values_a ḡ_{a,i}; w is zero.
+APSL_INLINE float4 sum_over_corners(__global const uint* corner_offsets, __global const uint* corners,
+                                    __global const apsl_gradients* gradients, __global const float* values, uint i) {
     float4 sum = (float4)(0.0f);
     const uint end = corner_offsets[i + 1];
     for (uint n = corner_offsets[i]; n < end; ++n) {
         const uint corner = corners[n];
-        const uint a = APSL_CORNER_TRIANGLE(corner);
-        sum += values[a] * corner_gradient(gradients[a], APSL_CORNER_NUMBER(corner));
+        sum += values[APSL_CORNER_TRIANGLE(corner)] * corner_gradient(gradients, corner);
     }
-    return sum;
+    return sum * APSL_GRADIENT_UNIT;
 }
 
 #endif

@@ -4,9 +4,6 @@
 // A launch has get_num_groups(0) work-groups for every cloth, and the cloths along dimension 1. Each group owns one
 // contiguous chunk; its work-items stride through it. With one work-item a group (what suits a CPU) that is a plain
 // loop; with many it is coalesced. Nothing depends on how many work-items run in lockstep.
-//
-// Every helper is always_inline: pocl 3.1 keeps group and local ids in variables that all its threads share, and only
-// what is inlined into the kernel reads the thread's own. A helper it left as a call mixed cloths up now and then.
 #ifndef APSL_WORK_GROUP_H
 #define APSL_WORK_GROUP_H
 
@@ -24,7 +21,7 @@ typedef struct {
 
 // This work-item's share of `count` elements, or nothing where the launch has nothing to do. Chunks begin at multiples
 // of 16 elements. An empty range, not an early return: barriers follow.
-static inline __attribute__((always_inline)) apsl_range share_of(uint count, bool active) {
+APSL_INLINE apsl_range share_of(uint count, bool active) {
     const uint groups = (uint)get_num_groups(0);
     const uint chunk = ((count + groups - 1u) / groups + 15u) & ~15u;
     const uint begin = min((uint)get_group_id(0) * chunk, count);
@@ -34,6 +31,20 @@ static inline __attribute__((always_inline)) apsl_range share_of(uint count, boo
     return range;
 }
 
+// Local memory written by the group's work-items before, readable by all of them after.
+APSL_INLINE void group_barrier(void) {
+#if APSL_WORK_GROUP_SIZE > 1
+    barrier(CLK_LOCAL_MEM_FENCE);
+#endif
+}
+
+// Likewise for local and global memory.
+APSL_INLINE void group_memory_barrier(void) {
+#if APSL_WORK_GROUP_SIZE > 1
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+#endif
+}
+
 #if APSL_WORK_GROUP_SIZE > 1
 #define APSL_SCRATCH __local float scratch[APSL_WORK_GROUP_SIZE]
 #else
@@ -41,7 +52,7 @@ static inline __attribute__((always_inline)) apsl_range share_of(uint count, boo
 #endif
 
 // Sum over the work-group, given to every work-item. Halving, over a power of two fixed at compile time.
-static inline __attribute__((always_inline)) float group_sum(float value, __local float* scratch) {
+APSL_INLINE float group_sum(float value, __local float* scratch) {
 #if APSL_WORK_GROUP_SIZE > 1
     const uint l = (uint)get_local_id(0);
     scratch[l] = value;
@@ -52,12 +63,14 @@ static inline __attribute__((always_inline)) float group_sum(float value, __loca
     }
     value = scratch[0];
     barrier(CLK_LOCAL_MEM_FENCE);
+#else
+    (void)scratch;
 #endif
     return value;
 }
 
 // Greatest over the work-group, given to every work-item.
-static inline __attribute__((always_inline)) float group_max(float value, __local float* scratch) {
+APSL_INLINE float group_max(float value, __local float* scratch) {
 #if APSL_WORK_GROUP_SIZE > 1
     const uint l = (uint)get_local_id(0);
     scratch[l] = value;
@@ -68,27 +81,26 @@ static inline __attribute__((always_inline)) float group_max(float value, __loca
     }
     value = scratch[0];
     barrier(CLK_LOCAL_MEM_FENCE);
+#else
+    (void)scratch;
 #endif
     return value;
 }
 
 // The partial results of one kind, one float for each of `groups` groups, of the cloth of this work-group.
-static inline __attribute__((always_inline)) __global float* partials_of(__global float* partials, uint kind,
-                                                                         uint groups) {
+APSL_INLINE __global float* partials_of(__global float* partials, uint kind, uint groups) {
     return partials + ((uint)get_group_id(1) * APSL_PARTIAL_KINDS + kind) * groups;
 }
 
 // Sum of a kind's partial results. Every group does it anew: cheaper than a launch in between.
-static inline __attribute__((always_inline)) float sum_partials(__global float* partials, uint kind, uint groups,
-                                                                __local float* scratch) {
+APSL_INLINE float sum_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
     __global const float* p = partials_of(partials, kind, groups);
     float sum = 0.0f;
     for (uint g = (uint)get_local_id(0); g < groups; g += APSL_WORK_GROUP_SIZE) sum += p[g];
     return group_sum(sum, scratch);
 }
 
-static inline __attribute__((always_inline)) float max_partials(__global float* partials, uint kind, uint groups,
-                                                                __local float* scratch) {
+APSL_INLINE float max_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
     __global const float* p = partials_of(partials, kind, groups);
     float greatest = 0.0f;
     for (uint g = (uint)get_local_id(0); g < groups; g += APSL_WORK_GROUP_SIZE) greatest = fmax(greatest, p[g]);
@@ -96,7 +108,7 @@ static inline __attribute__((always_inline)) float max_partials(__global float* 
 }
 
 // Stores this group's partial result.
-static inline __attribute__((always_inline)) void store_partial(__global float* partials, uint kind, float value) {
+APSL_INLINE void store_partial(__global float* partials, uint kind, float value) {
     if (get_local_id(0) == 0) partials_of(partials, kind, (uint)get_num_groups(0))[get_group_id(0)] = value;
 }
 

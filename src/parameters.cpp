@@ -28,6 +28,8 @@ void validate(const Parameters& p) {
             p.target_area_change, "a finite number >= 0 (a fraction of the rest area)");
     require(p.tolerance >= 0.0f && p.tolerance < 1.0f, "tolerance", p.tolerance, "a number in [0, 1)");
     require(p.max_iterations >= 1, "max_iterations", p.max_iterations, "a whole number >= 1");
+    require(p.adaptive_iterations >= 0, "adaptive_iterations", p.adaptive_iterations,
+            "a whole number >= 0 (0 keeps the regularization as given)");
 }
 
 }  // namespace apsl

@@ -60,6 +60,7 @@ typedef struct apsl_limiter_parameters {
     float target_area_change; /* |A - A0| / A0 >= 0 at which no further sub-step is done */
     float tolerance;          /* in [0, 1), of a solve's residual */
     int32_t max_iterations;   /* >= 1, of a solve */
+    int32_t adaptive_iterations; /* 0: alpha stays as given; else more iterations than this raise it */
 } apsl_limiter_parameters;
 
 /* apsl::BufferView: 32-bit floats in a buffer of the caller's. */

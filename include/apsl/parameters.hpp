@@ -19,14 +19,25 @@ enum class Apply : std::int32_t {
     matrix_free = 1,    ///< from the corner gradients, nothing assembled
 };
 
+/// How a call is divided over the device.
+enum class Execution : std::int32_t {
+    automatic = 0,    ///< one_group where the largest cloth is small, many_groups otherwise
+    many_groups = 1,  ///< each step of the filter is a launch over all of a cloth
+    one_group = 2,    ///< one work-group takes one cloth through the whole call, in a single launch for all cloths
+};
+
 /// What may change from one filter call to the next.
 struct Parameters {
     float time_step = 1.0f / 60.0f;  ///< s, > 0; Δt of Algorithm 1
     float regularization = 1.2f;     ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
     std::int32_t sub_steps = 10;     ///< ≥ 0; the fixed count of Algorithm 1
-    float target_area_change = 0.0f;  ///< |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it
-    float tolerance = 0.1f;  ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, Euclidean norms of areas in m²
+    float target_area_change = 0.0f;   ///< |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it
+    float tolerance = 0.1f;            ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, Euclidean norms of areas in m²
     std::int32_t max_iterations = 50;  ///< ≥ 1, CG iterations a solve
+    /// 0: α stays as given. Otherwise a solve that fails or takes more iterations than this raises α for the next one
+    /// (α − 1 doubles, up to 1024-fold), and one that takes at most half of it lowers it again towards the given value
+    /// (Section 4).
+    std::int32_t adaptive_iterations = 0;
 };
 
 /// Throws Error(invalid_argument) naming the first field that is out of range or not finite.

@@ -22,6 +22,8 @@ namespace apsl {
 struct Options {
     Matrix matrix = Matrix::consistent;
     Apply apply = Apply::matrix_free;
+    /// one_group needs the consistent matrix, matrix-free.
+    Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;
     /// Floats from one vertex to the next in positions and in velocities, ≥ 3.

@@ -2,6 +2,7 @@
 //
 // Algorithm 1: predict, solve for the pressures, displace, repeat; only the corrections go into the velocities.
 
+#include "reference/adaptive_regularization.hpp"
 #include "reference/area_change.hpp"
 #include "reference/check.hpp"
 #include "reference/conjugate_gradient.hpp"
@@ -60,6 +61,8 @@ struct BasicStrainLimiter<Real>::Implementation {
     std::vector<TriangleGeometry<Real>> geometry;
     TriangleVector<Real> area_excess;  // b = A − A⁰
     TriangleVector<Real> lambda;
+    std::vector<Real> effective_regularization;  // α, [T]
+    Real adaptive_factor = Real(1);              // outlives the call
     ConjugateGradientScratch<Real> scratch;
     Stats stats{};
 
@@ -77,10 +80,13 @@ struct BasicStrainLimiter<Real>::Implementation {
             consistent_matrix(*topology, shared, triangles, buffers.inverse_masses, G);
         else
             printed_matrix(*topology, shared, triangles, buffers.inverse_masses, G);
-        if (buffers.regularization.empty())
-            regularize(static_cast<Real>(parameters.regularization), G);
-        else
-            regularize(buffers.regularization, G);
+        effective_regularization.resize(geometry.size());
+        for (std::size_t a = 0; a < geometry.size(); ++a) {
+            const Real given = buffers.regularization.empty() ? static_cast<Real>(parameters.regularization)
+                                                              : buffers.regularization[a];
+            effective_regularization[a] = raised_regularization(given, adaptive_factor);
+        }
+        regularize(std::span<const Real>(effective_regularization), G);
 
         area_excess.resize(static_cast<Eigen::Index>(geometry.size()));
         for (std::size_t a = 0; a < geometry.size(); ++a) area_excess[a] = geometry[a].area - buffers.rest_areas[a];
@@ -129,6 +135,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             stats.cg_iterations += result.iterations;
             stats.residual = std::max(stats.residual, static_cast<float>(result.relative_residual));
             all_converged = all_converged && result.converged;
+            adaptive_factor = adapted_factor(adaptive_factor, parameters, result.iterations, result.converged);
         }
         // Without a sub-step there is nothing to add, not even a zero: −0 + 0 would lose its sign.
         if (stats.sub_steps > 0) {
@@ -167,8 +174,8 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
     const auto rows = static_cast<std::size_t>(i.G.rows());
     return entries * (sizeof(Real) + sizeof(int)) + (rows + 1) * sizeof(int) + bytes(i.shared) + bytes(i.predicted) +
            bytes(i.moved) + bytes(i.correction) + bytes(i.geometry) + bytes(i.area_excess) + bytes(i.lambda) +
-           bytes(i.scratch.inverse_diagonal) + bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) +
-           bytes(i.scratch.direction) + bytes(i.scratch.product);
+           bytes(i.effective_regularization) + bytes(i.scratch.inverse_diagonal) + bytes(i.scratch.residual) +
+           bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) + bytes(i.scratch.product);
 }
 
 template <class Real>

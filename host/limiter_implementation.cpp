@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+#include "limiter_implementation.hpp"
+
+#include "limiter_options.hpp"
+#include "opencl_error.hpp"
+#include "program.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstring>
+
+namespace apsl {
+namespace {
+
+using namespace host;
+
+static_assert(sizeof(Stats) == sizeof(apsl_stats));
+static_assert(offsetof(Stats, residual) == offsetof(apsl_stats, residual));
+static_assert(offsetof(Stats, status) == offsetof(apsl_stats, status));
+static_assert(std::has_single_bit(sizeof(apsl_parameters)), "clEnqueueFillBuffer takes powers of two");
+static_assert(static_cast<int>(Status::not_converged) == APSL_STATUS_NOT_CONVERGED);
+static_assert(static_cast<int>(Status::diverged) == APSL_STATUS_DIVERGED);
+
+// Bytes of a triangle's corner gradients (kernels/gradients.h).
+constexpr std::size_t gradient_bytes = 32;
+
+[[noreturn]] void invalid(const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, what);
+}
+
+apsl_parameters device_parameters(const Parameters& p) {
+    return {p.time_step, 1.0f / p.time_step, p.regularization,     p.target_area_change, p.tolerance * p.tolerance,
+            p.sub_steps, p.max_iterations,   p.adaptive_iterations};
+}
+
+void check_view(const BufferView& view, std::size_t floats, const char* name) {
+    if (!view.buffer) invalid(std::string("buffers.") + name + " is null");
+    if (view.offset % sizeof(float) != 0)
+        invalid(std::string("buffers.") + name + " has offset " + std::to_string(view.offset) +
+                ", expected a multiple of 4 bytes");
+    std::size_t size = 0;
+    check(clGetMemObjectInfo(view.buffer, CL_MEM_SIZE, sizeof size, &size, nullptr), "asking a buffer for its size");
+    const std::size_t needed = floats * sizeof(float);
+    // Subtracted rather than added: an offset near the end of the range must not wrap round.
+    if (view.offset > size || size - view.offset < needed)
+        invalid(std::string("buffers.") + name + " holds " + std::to_string(size) + " bytes, expected at least " +
+                std::to_string(needed) + " from offset " + std::to_string(view.offset) + " on");
+}
+
+void check_topologies(std::span<const std::shared_ptr<const Topology>> cloths) {
+    if (cloths.empty()) invalid("no cloths given, expected at least one");
+    for (const auto& topology : cloths)
+        if (!topology) invalid("a cloth's topology is null");
+}
+
+}  // namespace
+
+StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id device,
+                                              std::span<const std::shared_ptr<const Topology>> topologies,
+                                              const Options& requested)
+    : facts(device_facts(device)), context(the_context) {
+    check_topologies(topologies);
+    options = resolve(requested, facts, topologies);
+    largest_cloth = largest_triangle_count(topologies);
+    const Adjacency adjacency = build_adjacency(topologies, options.matrix, uses_pattern(options),
+                                                patch_triangles(facts, options, largest_cloth));
+    program = build_program(context, device, program_source(kernel_files(options)),
+                            build_options(options, adjacency.max_patch_vertices));
+    create_buffers(adjacency);
+    create_kernels();
+}
+
+BufferHandle StrainLimiter::Implementation::buffer(std::size_t size, const void* contents) {
+    if (size > facts.max_allocation)
+        throw Error(ErrorCode::unsupported, "a buffer of " + std::to_string(size) + " bytes is needed, device " +
+                                                facts.name + " allows " + std::to_string(facts.max_allocation));
+    cl_int status = CL_SUCCESS;
+    BufferHandle handle(clCreateBuffer(context, CL_MEM_READ_WRITE | (contents ? CL_MEM_COPY_HOST_PTR : 0), size,
+                                       const_cast<void*>(contents), &status));
+    check(status, "allocating device memory");
+    bytes += size;
+    return handle;
+}
+
+void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
+    cloth_count = static_cast<std::uint32_t>(adjacency.cloths.size());
+    vertex_count = adjacency.vertex_count;
+    triangle_count = adjacency.triangle_count;
+    rest_area_count = adjacency.rest_area_count;
+    std::uint32_t largest = 1;
+    for (const apsl_cloth& cloth : adjacency.cloths)
+        largest = std::max({largest, cloth.triangle_count, cloth.vertex_count});
+    groups = group_count(facts, options, largest);
+
+    cloths = upload(adjacency.cloths);
+    parameters = buffer(cloth_count * sizeof(apsl_parameters));
+    apsl_solve_state initial{};
+    initial.adaptive_factor = 1.0f;
+    states = upload(std::vector(cloth_count, initial));
+    stats = buffer(cloth_count * sizeof(apsl_stats));
+    if (!one_group()) partials = buffer(std::size_t{cloth_count} * groups * APSL_PARTIAL_KINDS * sizeof(float));
+
+    vertex_order = upload(adjacency.vertex_order);
+    triangle_order = upload(adjacency.triangle_order);
+    triangles = upload(adjacency.triangles);
+    corner_offsets = upload(adjacency.corner_offsets);
+    corners = upload(adjacency.corners);
+    if (uses_pattern(options)) {
+        row_offsets = upload(adjacency.row_offsets);
+        columns = upload(adjacency.columns);
+        shared = upload(adjacency.shared);
+    } else {
+        patches = upload(adjacency.patches);
+        patch_vertices = upload(adjacency.patch_vertices);
+        local_triangles = upload(adjacency.local_triangles);
+    }
+    if (assembled()) values = buffer(adjacency.columns.size() * sizeof(float));
+
+    predicted = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
+    gradients = buffer(triangle_count * gradient_bytes);
+    residual = zeroed_buffer(triangle_count);
+    damped_diagonal = zeroed_buffer(triangle_count);
+    product = zeroed_buffer(triangle_count);
+    direction = buffer(triangle_count * sizeof(float));
+    direction_product = buffer(triangle_count * sizeof(float));
+    pressure = buffer(triangle_count * sizeof(float));
+}
+
+void StrainLimiter::Implementation::create_kernels() {
+    const auto kernel = [&](const char* name) { return create_kernel(program.get(), name); };
+    set_parameters = kernel("set_parameters");
+    set_arguments(set_parameters, 0, parameters);
+    if (one_group()) {
+        filter_in_one_group = kernel("filter_in_one_group");
+        set_arguments(filter_in_one_group, 0, cloths, parameters, states, stats, vertex_order, triangle_order,
+                      triangles, patches, patch_vertices, local_triangles, corner_offsets, corners, predicted,
+                      gradients, residual, damped_diagonal, product, direction, direction_product, pressure);
+        return;
+    }
+    predict_positions = kernel("predict_positions");
+    set_arguments(predict_positions, 0, cloths, parameters, states, stats, vertex_order, predicted);
+    assemble_gradients = kernel("assemble_gradients");
+    set_arguments(assemble_gradients, 0, cloths, parameters, states, partials, triangle_order, triangles, predicted,
+                  gradients, residual, damped_diagonal);
+    measure_area_change = kernel("measure_area_change");
+    set_arguments(measure_area_change, 0, cloths, partials, triangle_order, triangles, predicted);
+    begin_solve = kernel("begin_solve");
+    set_arguments(begin_solve, 0, parameters, states, stats, partials, groups);
+    end_call = kernel("end_call");
+    set_arguments(end_call, 0, stats, partials, groups);
+    create_apply_kernels();
+    cg_update = kernel("cg_update");
+    set_arguments(cg_update, 0, cloths, states, partials, residual, damped_diagonal, product, direction,
+                  direction_product, pressure);
+    gather_displacements = kernel("gather_displacements");
+    set_arguments(gather_displacements, 0, cloths, parameters, states, stats, partials, corner_offsets, corners,
+                  gradients, pressure, predicted);
+    update_velocities = kernel("update_velocities");
+    set_arguments(update_velocities, 0, cloths, parameters, stats, vertex_order, predicted);
+}
+
+void StrainLimiter::Implementation::create_apply_kernels() {
+    const auto kernel = [&](const char* name) { return create_kernel(program.get(), name); };
+    if (assembled()) {
+        assemble_pressure_csr = kernel("assemble_pressure_csr");
+        set_arguments(assemble_pressure_csr, 0, cloths, states, triangles, predicted, gradients, row_offsets, columns,
+                      shared, values);
+        apply_dot = kernel("csr_spmv_dot");
+        set_arguments(apply_dot, 0, cloths, parameters, states, partials, row_offsets, columns, values, residual,
+                      product);
+    } else if (options.matrix == Matrix::printed) {
+        apply_dot = kernel("matrix_free_apply_dot");
+        set_arguments(apply_dot, 0, cloths, parameters, states, partials, triangles, predicted, gradients, row_offsets,
+                      columns, shared, residual, product);
+    } else {
+        apply_dot = kernel("matrix_free_apply_dot");
+        set_arguments(apply_dot, 0, cloths, parameters, states, partials, patches, patch_vertices, local_triangles,
+                      corner_offsets, corners, gradients, residual, product);
+        finish_solve = kernel("finish_solve");
+        set_arguments(finish_solve, 0, cloths, parameters, states, partials, patches, patch_vertices, local_triangles,
+                      corner_offsets, corners, gradients, residual, damped_diagonal, product, direction,
+                      direction_product, pressure, groups);
+    }
+}
+
+void StrainLimiter::Implementation::check_buffers(const Buffers& buffers) const {
+    check_view(buffers.positions, std::size_t{vertex_count - 1} * options.position_stride + 3, "positions");
+    check_view(buffers.velocities, std::size_t{vertex_count - 1} * options.velocity_stride + 3, "velocities");
+    check_view(buffers.inverse_masses, vertex_count, "inverse_masses");
+    check_view(buffers.rest_areas, rest_area_count, "rest_areas");
+    if (options.regularization_per_triangle)
+        check_view(buffers.regularization, rest_area_count, "regularization");
+    else if (buffers.regularization.buffer)
+        invalid("buffers.regularization is given, but Options::regularization_per_triangle is off");
+}
+
+void StrainLimiter::Implementation::bind(const Buffers& buffers) const {
+    const auto set = [](const Kernel& kernel, cl_uint first, const BufferView& view) {
+        set_arguments(kernel, first, view.buffer, cl_ulong{view.offset / sizeof(float)});
+    };
+    // A kernel needs some buffer there even where it reads none.
+    const BufferView& regularization = buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
+    if (one_group()) {
+        set(filter_in_one_group, 20, buffers.positions);
+        set(filter_in_one_group, 22, buffers.velocities);
+        set(filter_in_one_group, 24, buffers.inverse_masses);
+        set(filter_in_one_group, 26, buffers.rest_areas);
+        set(filter_in_one_group, 28, regularization);
+        return;
+    }
+    set(predict_positions, 6, buffers.positions);
+    set(predict_positions, 8, buffers.velocities);
+    set(predict_positions, 10, buffers.inverse_masses);
+    set(assemble_gradients, 10, buffers.rest_areas);
+    set(assemble_gradients, 12, regularization);
+    set(measure_area_change, 5, buffers.rest_areas);
+    set(update_velocities, 5, buffers.positions);
+    set(update_velocities, 7, buffers.velocities);
+}
+
+void StrainLimiter::Implementation::queue_parameters(CommandSequence& commands,
+                                                     std::span<const Parameters> given) const {
+    // A fill takes its pattern at once and a launch its arguments, so nothing of the caller's has to outlive this call.
+    if (given.size() == 1) {
+        const apsl_parameters pattern = device_parameters(given[0]);
+        commands.fill(parameters, &pattern, sizeof pattern, 0, cloth_count * sizeof pattern);
+        return;
+    }
+    for (cl_uint first = 0; first < cloth_count; first += APSL_PARAMETER_BLOCK) {
+        const cl_uint count = std::min<cl_uint>(cloth_count - first, APSL_PARAMETER_BLOCK);
+        apsl_parameter_block block{};
+        std::transform(given.begin() + first, given.begin() + first + count, block.entry, device_parameters);
+        set_arguments(set_parameters, 1, block, first, count);
+        commands.launch(set_parameters, 1, options.work_group_size, 1);
+    }
+}
+
+void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int max_iterations) const {
+    launch(commands, assemble_gradients);
+    launch_one_group(commands, begin_solve);
+    if (assembled()) launch(commands, assemble_pressure_csr);
+    const cl_int queued = queued_iterations(options, largest_cloth, max_iterations);
+    for (cl_int k = 0; k < queued; ++k) {
+        set_argument(apply_dot, assembled() ? 9 : 12, k);
+        launch(commands, apply_dot);
+        set_argument(cg_update, 9, k);
+        launch(commands, cg_update);
+    }
+    if (queued < max_iterations) {
+        set_argument(finish_solve, 17, queued);
+        launch_one_group(commands, finish_solve);
+    }
+    // The slot of the residual after the last iteration.
+    set_argument(gather_displacements, 10, static_cast<cl_uint>(queued & 1));
+    launch(commands, gather_displacements);
+}
+
+void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, int sub_steps,
+                                                      int max_iterations) const {
+    launch(commands, predict_positions);
+    for (cl_int sub_step = 0; sub_step < sub_steps; ++sub_step) {
+        set_argument(begin_solve, 5, sub_step);
+        queue_solve(commands, max_iterations);
+    }
+    launch(commands, measure_area_change);
+    launch_one_group(commands, end_call);
+    if (sub_steps > 0) launch(commands, update_velocities);
+}
+
+cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Buffers& buffers,
+                                                std::span<const Parameters> given,
+                                                std::span<const cl_event> wait_list) {
+    if (given.size() != 1 && given.size() != cloth_count)
+        invalid(std::to_string(given.size()) + " parameters given for " + std::to_string(cloth_count) +
+                " cloths, expected one for each or a single one");
+    int sub_steps = 0, max_iterations = 1;
+    for (const Parameters& p : given) {
+        validate(p);
+        sub_steps = std::max(sub_steps, p.sub_steps);
+        max_iterations = std::max(max_iterations, p.max_iterations);
+    }
+    check_buffers(buffers);
+    bind(buffers);
+
+    CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
+    queue_parameters(commands, given);
+    if (one_group())
+        launch_one_group(commands, filter_in_one_group);
+    else
+        queue_many_groups(commands, sub_steps, max_iterations);
+    return commands.end();
+}
+
+}  // namespace apsl

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "device_facts.hpp"
+#include "handles.hpp"
+#include "kernel_launch.hpp"
+#include "limiter_plan.hpp"
+
+#include <apsl/strain_limiter.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace apsl {
+
+/// The device side of a limiter: its buffers, its kernels, and the order of launches that makes Algorithm 1.
+/// A kernel or buffer that the options do not need stays empty.
+struct StrainLimiter::Implementation {
+    Implementation(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
+                   const Options& requested);
+
+    cl_event enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,
+                     std::span<const cl_event> wait_list);
+
+    host::DeviceFacts facts;
+    Options options;
+    cl_context context;
+    std::uint32_t cloth_count = 0, vertex_count = 0, triangle_count = 0, rest_area_count = 0, groups = 1;
+    std::size_t largest_cloth = 0;  ///< triangles
+    std::size_t bytes = 0;
+    host::LaunchProfile profile;
+    bool profiling = false;
+
+    host::BufferHandle cloths, parameters, states, stats, partials;
+    host::BufferHandle vertex_order, triangle_order, triangles, corner_offsets, corners;
+    host::BufferHandle patches, patch_vertices, local_triangles, row_offsets, columns, shared, values;
+    host::BufferHandle predicted, gradients, residual, damped_diagonal, product, direction, direction_product, pressure;
+
+    host::ProgramHandle program;
+    host::Kernel set_parameters, predict_positions, assemble_gradients, measure_area_change, begin_solve, end_call;
+    host::Kernel assemble_pressure_csr, apply_dot, cg_update, finish_solve, gather_displacements, update_velocities;
+    host::Kernel filter_in_one_group;
+
+private:
+    bool one_group() const { return options.execution == Execution::one_group; }
+    bool assembled() const { return options.apply == Apply::assembled_csr; }
+
+    host::BufferHandle buffer(std::size_t size, const void* contents = nullptr);
+    template <class Value>
+    host::BufferHandle upload(const std::vector<Value>& contents) {
+        return buffer(contents.size() * sizeof(Value), contents.data());
+    }
+    /// The padding of these is read by vector loads and must hold numbers.
+    host::BufferHandle zeroed_buffer(std::size_t floats) { return upload(std::vector<float>(floats, 0.0f)); }
+
+    void create_buffers(const host::Adjacency& adjacency);
+    void create_kernels();
+    void create_apply_kernels();
+    void check_buffers(const Buffers& buffers) const;
+    void bind(const Buffers& buffers) const;
+    void queue_parameters(host::CommandSequence& commands, std::span<const Parameters> given) const;
+    void queue_solve(host::CommandSequence& commands, int max_iterations) const;
+    void queue_many_groups(host::CommandSequence& commands, int sub_steps, int max_iterations) const;
+
+    void launch(host::CommandSequence& commands, const host::Kernel& kernel) const {
+        commands.launch(kernel, groups, options.work_group_size, cloth_count);
+    }
+    /// One group for each cloth.
+    void launch_one_group(host::CommandSequence& commands, const host::Kernel& kernel) const {
+        commands.launch(kernel, 1, options.work_group_size, cloth_count);
+    }
+};
+
+}  // namespace apsl

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "limiter_options.hpp"
+
+#include <apsl/error.hpp>
+
+#include <algorithm>
+#include <bit>
+
+namespace apsl::host {
+namespace {
+
+// Measured by bench/kernels: below this many triangles a cloth in one group beats the launches it saves.
+constexpr std::size_t one_group_triangles = 6144;
+// Above this many a launch costs nothing beside its work, and a solve finished by one group would be slow.
+constexpr std::size_t finish_triangles = 65536;
+// Enough for α = 1.2 at tolerance 0.1, which takes three to five; even, so that residuals end in the even slot.
+constexpr int usual_iterations = 8;
+
+[[noreturn]] void invalid(const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, what);
+}
+
+void check_stride(std::uint32_t stride, const char* name) {
+    if (stride < 3) invalid(std::string(name) + " is " + std::to_string(stride) + ", expected at least 3");
+}
+
+bool matrix_free_consistent(const Options& options) {
+    return options.matrix == Matrix::consistent && options.apply == Apply::matrix_free;
+}
+
+Execution resolve_execution(const Options& options, std::size_t largest) {
+    switch (options.execution) {
+        case Execution::automatic:
+            return matrix_free_consistent(options) && largest <= one_group_triangles ? Execution::one_group
+                                                                                     : Execution::many_groups;
+        case Execution::many_groups:
+            return options.execution;
+        case Execution::one_group:
+            if (!matrix_free_consistent(options))
+                invalid("execution is one_group, which needs the consistent matrix, matrix-free");
+            return options.execution;
+    }
+    invalid("unknown execution");
+}
+
+}  // namespace
+
+std::size_t largest_triangle_count(std::span<const std::shared_ptr<const Topology>> cloths) {
+    std::size_t largest = 0;
+    for (const auto& topology : cloths) largest = std::max(largest, topology->triangle_count());
+    return largest;
+}
+
+Options resolve(Options options, const DeviceFacts& facts, std::span<const std::shared_ptr<const Topology>> cloths) {
+    check_stride(options.position_stride, "position_stride");
+    check_stride(options.velocity_stride, "velocity_stride");
+    if (options.matrix != Matrix::consistent && options.matrix != Matrix::printed) invalid("unknown matrix");
+    if (options.apply != Apply::assembled_csr && options.apply != Apply::matrix_free) invalid("unknown apply");
+    options.execution = resolve_execution(options, largest_triangle_count(cloths));
+    if (options.work_group_size == 0)
+        options.work_group_size =
+            facts.is_cpu
+                ? 1
+                : static_cast<std::uint32_t>(std::bit_floor(std::min<std::size_t>(facts.max_work_group_size, 256)));
+    if (!std::has_single_bit(options.work_group_size))
+        invalid("work_group_size is " + std::to_string(options.work_group_size) + ", expected a power of two");
+    if (options.work_group_size > facts.max_work_group_size)
+        throw Error(ErrorCode::unsupported, "work_group_size is " + std::to_string(options.work_group_size) +
+                                                ", device " + facts.name + " allows " +
+                                                std::to_string(facts.max_work_group_size));
+    return options;
+}
+
+bool uses_pattern(const Options& options) {
+    return !matrix_free_consistent(options);
+}
+
+std::vector<std::string_view> kernel_files(const Options& options) {
+    if (options.execution == Execution::one_group) return {"set_parameters.cl", "filter_in_one_group.cl"};
+    std::vector<std::string_view> files{"set_parameters.cl",       "predict_positions.cl", "assemble_gradients.cl",
+                                        "measure_area_change.cl",  "solve_control.cl",     "cg_update.cl",
+                                        "gather_displacements.cl", "update_velocities.cl"};
+    if (options.apply == Apply::assembled_csr)
+        files.insert(files.end(), {"assemble_pressure_csr.cl", "csr_spmv_dot.cl"});
+    else if (options.matrix == Matrix::printed)
+        files.push_back("matrix_free_printed.cl");
+    else
+        files.insert(files.end(), {"matrix_free_consistent.cl", "finish_solve.cl"});
+    return files;
+}
+
+std::string build_options(const Options& options, std::uint32_t patch_vertices) {
+    const auto define = [](const char* name, std::uint32_t value) {
+        return std::string(" -D ") + name + "=" + std::to_string(value);
+    };
+    return "-cl-std=CL1.2" + define("APSL_WORK_GROUP_SIZE", options.work_group_size) +
+           define("APSL_POSITION_STRIDE", options.position_stride) +
+           define("APSL_VELOCITY_STRIDE", options.velocity_stride) +
+           define("APSL_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
+           define("APSL_PATCH_VERTICES", patch_vertices) +
+           define("APSL_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0);
+}
+
+std::uint32_t patch_triangles(const DeviceFacts& facts, const Options& options, std::size_t largest) {
+    const std::uint32_t most = facts.is_cpu ? 1024 : 2 * options.work_group_size;
+    if (options.execution == Execution::one_group) return most;
+    const std::size_t share = largest / (std::size_t{facts.compute_units} * 4);
+    return static_cast<std::uint32_t>(std::clamp<std::size_t>(share, 128, most));
+}
+
+std::uint32_t group_count(const DeviceFacts& facts, const Options& options, std::uint32_t largest) {
+    if (options.execution == Execution::one_group) return 1;
+    // A group that has less to do than this costs more to start than it saves.
+    const std::uint32_t least_share = std::max(options.work_group_size, 256u);
+    return std::clamp((largest + least_share - 1) / least_share, 1u, facts.compute_units * 8);
+}
+
+int queued_iterations(const Options& options, std::size_t largest, int max_iterations) {
+    if (!matrix_free_consistent(options) || largest > finish_triangles) return max_iterations;
+    return std::min(max_iterations, usual_iterations);
+}
+
+}  // namespace apsl::host

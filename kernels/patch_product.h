@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// q = A r for the consistent matrix without assembling it, A = J̄ J̄ᵀ + diag((α − 1)/α): a work-group takes a patch of
+// triangles at a time, gathers the forces u = J̄ᵀ r on the patch's vertices into local memory, and applies J̄ from there.
+// Vertices on a patch's rim are gathered by every patch they belong to.
+// Reference: apsl::reference::consistent_matrix times a vector.
+#ifndef APSL_PATCH_PRODUCT_H
+#define APSL_PATCH_PRODUCT_H
+
+#include "gradients.h"
+#include "layout.h"
+#include "vertex_gather.h"
+#include "work_group.h"
+
+#ifndef APSL_PATCH_VERTICES
+#define APSL_PATCH_VERTICES 1024
+#endif
+
+// This work-item's part of r·q.
+APSL_INLINE float multiply_patches(apsl_cloth cloth, bool active, __global const uint2* patches,
+                                   __global const uint* patch_vertices, __global const ushort* local_triangles,
+                                   __global const uint* corner_offsets, __global const uint* corners,
+                                   __global const apsl_gradients* gradients, __global const float* residual,
+                                   __global float* product, __local float4* forces) {
+    const uint groups = (uint)get_num_groups(0);
+    const uint share = (cloth.patch_count + groups - 1u) / groups;
+    const uint begin = min((uint)get_group_id(0) * share, cloth.patch_count);
+    const uint end = active ? min(begin + share, cloth.patch_count) : begin;
+    float curvature = 0.0f;
+    for (uint patch = cloth.patch_begin + begin; patch < cloth.patch_begin + end; ++patch) {
+        const uint2 first = patches[patch], last = patches[patch + 1];
+        for (uint n = first.y + (uint)get_local_id(0); n < last.y; n += APSL_WORK_GROUP_SIZE)
+            forces[n - first.y] = sum_over_corners(corner_offsets, corners, gradients, residual, patch_vertices[n]);
+        group_barrier();
+        for (uint a = first.x + (uint)get_local_id(0); a < last.x; a += APSL_WORK_GROUP_SIZE) {
+            const ushort3 v = vload3(a, local_triangles);
+            const float r = residual[a];
+            const float4 terms = corner_gradient(gradients, 4u * a) * forces[v.x] +
+                                 corner_gradient(gradients, 4u * a + 1u) * forces[v.y] +
+                                 corner_gradient(gradients, 4u * a + 2u) * forces[v.z];
+            const float2 halves = terms.lo + terms.hi;
+            const float q = APSL_GRADIENT_UNIT * (halves.x + halves.y) + gradients[a].shift * r;
+            product[a] = q;
+            curvature += r * q;
+        }
+        group_barrier();
+    }
+    return curvature;
+}
+
+#endif

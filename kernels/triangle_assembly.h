@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// What a solve needs of the geometry of its triangles, computed APSL_LANES triangles at a time.
+// Reference: apsl::reference, geometry, and the diagonal of Eq. (3).
+#ifndef APSL_TRIANGLE_ASSEMBLY_H
+#define APSL_TRIANGLE_ASSEMBLY_H
+
+#include "area_sums.h"
+#include "gradients.h"
+#include "layout.h"
+#include "regularization.h"
+#include "triangle_geometry.h"
+#include "work_group.h"
+
+// s = 1/√(α D); 0 where nothing can move the triangle, which makes its pressure 0 by definition.
+APSL_INLINE lanes jacobi_scale(lanes damped_diagonal, lanes rest_area) {
+    const lanes scale = select((lanes)(0.0f), 1.0f / sqrt(damped_diagonal), damped_diagonal > 0.0f);
+    return select((lanes)(0.0f), scale, rest_area > 0.0f);
+}
+
+// Two words of 16-bit fixed point: x and y, z and zero.
+APSL_INLINE void pack_gradient(apsl_triangle_geometry t, uint corner, lanes scale, lanes_int* words) {
+    const lanes4 g = cross_product(t.normal, t.edge[corner]);
+    const lanes factor = 32767.0f * scale * sqrt(0.5f * t.inverse_mass[corner]);
+    const lanes_int x = to_int(rint(factor * g.x)), y = to_int(rint(factor * g.y)), z = to_int(rint(factor * g.z));
+    words[0] = (x & 0xffff) | (y << 16);
+    words[1] = z & 0xffff;
+}
+
+typedef struct {
+    apsl_area_sums areas;
+    lanes squares, scaled_squares;  // of the right-hand side, plain and scaled
+} apsl_assembly_sums;
+
+// gradients[a], residual[a] = s (A − A⁰), damped_diagonal[a] = α D. `alpha` holds for all triangles, unless
+// `regularization` has one for each (in the caller's order, like rest_areas).
+APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active, float alpha, float adaptive_factor,
+                                                  __global const uint* triangle_order, __global const uint* triangles,
+                                                  __global const float4* predicted, __global apsl_gradients* gradients,
+                                                  __global float* residual, __global float* damped_diagonal,
+                                                  __global const float* rest_areas,
+                                                  __global const float* regularization) {
+    const apsl_range range = share_of(blocks_of(cloth), active);
+    apsl_assembly_sums sums;
+    sums.areas = no_areas();
+    sums.squares = 0.0f;
+    sums.scaled_squares = 0.0f;
+    for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + block * APSL_LANES;
+        const apsl_triangle_geometry triangle = load_triangles(triangles, predicted, a);
+        const lanes rest_area = load_rest_areas(cloth, triangle_order, rest_areas, block);
+#if APSL_REGULARIZATION_PER_TRIANGLE
+        (void)alpha;
+        const lanes given = fmax(load_lanes_in_order(regularization, triangle_order, a), (lanes)(1.0f));
+#else
+        (void)regularization;
+        const lanes given = alpha;
+#endif
+        const lanes effective = effective_regularization(given, adaptive_factor);
+        const lanes damped = effective * triangle.diagonal;
+        const lanes scale = jacobi_scale(damped, rest_area);
+        const lanes stretch = select((lanes)(0.0f), triangle.area - rest_area, scale > 0.0f);
+        const lanes r = scale * stretch;
+
+        lanes_int words[8];
+        pack_gradient(triangle, 0, scale, words);
+        pack_gradient(triangle, 1, scale, words + 2);
+        pack_gradient(triangle, 2, scale, words + 4);
+        words[6] = bits_of((effective - 1.0f) / effective);
+        words[7] = 0;
+        store_records(words, (__global int4*)gradients, a);
+        store_lanes(r, residual, a);
+        store_lanes(damped, damped_diagonal, a);
+        sums.squares += stretch * stretch;
+        sums.scaled_squares += r * r;
+        add_areas(&sums.areas, triangle, rest_area);
+    }
+    return sums;
+}
+
+// The areas alone.
+APSL_INLINE apsl_area_sums measure_triangles(apsl_cloth cloth, __global const uint* triangle_order,
+                                             __global const uint* triangles, __global const float4* predicted,
+                                             __global const float* rest_areas) {
+    const apsl_range range = share_of(blocks_of(cloth), true);
+    apsl_area_sums sums = no_areas();
+    for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
+        const apsl_triangle_geometry triangle =
+            load_triangles(triangles, predicted, cloth.triangle_begin + block * APSL_LANES);
+        add_areas(&sums, triangle, load_rest_areas(cloth, triangle_order, rest_areas, block));
+    }
+    return sums;
+}
+
+#endif

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "patches.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace apsl {
+namespace {
+
+constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
+
+// Appends to `order` up to `budget` unplaced triangles around `seed`, breadth-first across edges' and corners'
+// vertices. What it reached but did not place goes to `rim`.
+class PatchGrower {
+public:
+    explicit PatchGrower(const Topology& topology)
+        : topology_(topology), placed_(topology.triangle_count(), false), seen_in_(topology.triangle_count(), nowhere) {
+        order_.reserve(topology.triangle_count());
+    }
+
+    bool placed(std::uint32_t triangle) const { return placed_[triangle]; }
+    std::vector<std::uint32_t> take_order() { return std::move(order_); }
+    std::size_t placed_count() const { return order_.size(); }
+
+    void grow(std::uint32_t seed, std::uint32_t patch, std::size_t end, std::vector<std::uint32_t>& rim) {
+        queue_.assign(1, seed);
+        seen_in_[seed] = patch;
+        for (std::size_t next = 0; next < queue_.size(); ++next) {
+            const std::uint32_t triangle = queue_[next];
+            if (order_.size() == end) {
+                rim.push_back(triangle);
+                continue;
+            }
+            placed_[triangle] = true;
+            order_.push_back(triangle);
+            for (const std::uint32_t vertex : topology_.triangles()[triangle]) {
+                const std::uint32_t last = topology_.corner_offsets()[vertex + 1];
+                for (std::uint32_t n = topology_.corner_offsets()[vertex]; n < last; ++n) {
+                    const std::uint32_t neighbour = topology_.corners()[n] / 3;
+                    if (placed_[neighbour] || seen_in_[neighbour] == patch) continue;
+                    seen_in_[neighbour] = patch;
+                    queue_.push_back(neighbour);
+                }
+            }
+        }
+    }
+
+private:
+    const Topology& topology_;
+    std::vector<bool> placed_;
+    std::vector<std::uint32_t> seen_in_;
+    std::vector<std::uint32_t> queue_;
+    std::vector<std::uint32_t> order_;
+};
+
+}  // namespace
+
+Patches build_patches(const Topology& topology, std::uint32_t max_triangles) {
+    Patches patches;
+    const auto count = static_cast<std::uint32_t>(topology.triangle_count());
+    PatchGrower grower(topology);
+    std::vector<std::uint32_t> rim;
+    std::size_t next_in_rim = 0;
+    std::uint32_t next_anywhere = 0, patch = 0;
+    while (grower.placed_count() < count) {
+        patches.patch_offsets.push_back(static_cast<std::uint32_t>(grower.placed_count()));
+        const std::size_t end = std::min<std::size_t>(grower.placed_count() + max_triangles, count);
+        // Enclosed leftovers are smaller than a patch: go on from the next seed until the patch is full.
+        while (grower.placed_count() < end) {
+            while (next_in_rim < rim.size() && grower.placed(rim[next_in_rim])) ++next_in_rim;
+            if (next_in_rim < rim.size()) {
+                grower.grow(rim[next_in_rim], patch, end, rim);
+            } else {
+                while (grower.placed(next_anywhere)) ++next_anywhere;
+                grower.grow(next_anywhere, patch, end, rim);
+            }
+        }
+        ++patch;
+    }
+    patches.patch_offsets.push_back(count);
+    patches.triangle_order = grower.take_order();
+
+    std::vector<bool> used(topology.vertex_count(), false);
+    patches.vertex_order.reserve(topology.vertex_count());
+    const auto use = [&](std::uint32_t vertex) {
+        if (!used[vertex]) patches.vertex_order.push_back(vertex);
+        used[vertex] = true;
+    };
+    for (const std::uint32_t triangle : patches.triangle_order)
+        for (const std::uint32_t vertex : topology.triangles()[triangle]) use(vertex);
+    for (std::uint32_t vertex = 0; vertex < topology.vertex_count(); ++vertex) use(vertex);
+    return patches;
+}
+
+}  // namespace apsl
