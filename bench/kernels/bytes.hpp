@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+//
+// Bytes each kernel must move at least once, counted from the layouts (32-bit, strides of 3). Caches are taken to be
+// perfect: what several triangles share (a position, a vertex's force, a neighbour's residual) counts once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace apsl::bench {
+
+/// What the counts are multiplied with.
+struct Sizes {
+    std::size_t vertices, triangles;
+    std::size_t entries;  ///< of the matrix's pattern, diagonal included
+};
+
+struct Traffic {
+    std::string_view kernel;
+    double per_vertex, per_triangle, per_entry;
+    double per_triangle_saved_first = 0;  ///< what the first iteration of a solve need not read
+};
+
+// An index, an offset or a float is 4 bytes; predicted position with inverse mass (float4) 16; a caller's vector 12;
+// the record of three corner gradients 32, of which the gradients alone 24; the corners of a triangle, as its vertices
+// list them, 12. Names as in the kernels' arguments.
+constexpr std::array traffic_table{
+    // vertex_order, position, velocity, inverse mass read; predicted written
+    Traffic{"predict_positions", 48, 0, 0},
+    // predicted; indices 12, triangle_order, rest area read; record, residual, damped_diagonal written
+    Traffic{"assemble_gradients", 16, 60, 0},
+    // row offset, record read; column 4 and shared code 1 read, value written
+    Traffic{"assemble_pressure_csr", 0, 36, 9},
+    // row offset, residual read, product written; value and column read
+    Traffic{"csr_spmv_dot", 0, 12, 8},
+    // corner offset, patch_vertices; corners 12, record, residual, local_triangles 6 read, product written. The rims of
+    // the patches, which several patches read, are counted once.
+    Traffic{"matrix_free_apply_dot", 8, 58, 0},
+    // residual, direction, direction_product, pressure read and written, product, damped_diagonal read; the first
+    // iteration finds no direction, direction_product and pressure to read
+    Traffic{"cg_update", 0, 40, 0, 12},
+    // corner offset, predicted read and written; corners 12, gradients 24, pressure read
+    Traffic{"gather_displacements", 36, 40, 0},
+    // predicted; indices 12, triangle_order, rest area read
+    Traffic{"measure_area_change", 16, 20, 0},
+    // vertex_order, predicted, position, velocity read, velocity written
+    Traffic{"update_velocities", 56, 0, 0},
+};
+
+/// Bytes of one launch for the consistent matrix, on average over a solve of `iterations`; none for a kernel that the
+/// table does not hold.
+constexpr std::optional<double> bytes_moved(std::string_view kernel, const Sizes& sizes, int iterations) {
+    for (const Traffic& traffic : traffic_table)
+        if (traffic.kernel == kernel)
+            return traffic.per_vertex * static_cast<double>(sizes.vertices) +
+                   (traffic.per_triangle - traffic.per_triangle_saved_first / iterations) *
+                       static_cast<double>(sizes.triangles) +
+                   traffic.per_entry * static_cast<double>(sizes.entries);
+    return std::nullopt;
+}
+
+/// One CG iteration of an assembled float CSR matrix with the Jacobi preconditioner, for the peers: entries 8, row
+/// offset 4, and the same vectors as csr_spmv_dot and cg_update, which no peer does with less.
+constexpr double csr_iteration_bytes(const Sizes& sizes) {
+    return 8.0 * static_cast<double>(sizes.entries) + 52.0 * static_cast<double>(sizes.triangles);
+}
+
+}  // namespace apsl::bench
