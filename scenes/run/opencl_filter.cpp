@@ -34,6 +34,7 @@ Options options_for(const StrainLimiting& settings) {
     Options options;
     options.matrix = settings.matrix;
     options.apply = settings.apply;
+    options.execution = settings.execution;
     options.regularization_per_triangle = !settings.regularization.empty();
     return options;
 }

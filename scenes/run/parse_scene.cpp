@@ -159,6 +159,14 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
         object.choice("matrix", settings.matrix, {{"consistent", Matrix::consistent}, {"printed", Matrix::printed}});
     settings.apply = object.choice("apply", settings.apply,
                                    {{"assembled_csr", Apply::assembled_csr}, {"matrix_free", Apply::matrix_free}});
+    settings.execution = object.choice("execution", settings.execution,
+                                       {{"automatic", Execution::automatic},
+                                        {"many_groups", Execution::many_groups},
+                                        {"one_group", Execution::one_group}});
+    if (settings.execution == Execution::one_group &&
+        (settings.matrix != Matrix::consistent || settings.apply != Apply::matrix_free)) {
+        object.find("execution").fail("one_group needs the consistent matrix, matrix_free");
+    }
     const SceneValue regularization = object.find("regularization");
     if (regularization.json != nullptr && regularization.json->is_array()) {
         for (const SceneValue& entry : regularization.entries()) {
@@ -176,6 +184,8 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
         static_cast<float>(object.number("tolerance", parameters.tolerance, Range::from_to_below(0.0, 1.0)));
     parameters.max_iterations =
         static_cast<std::int32_t>(object.integer("max_iterations", parameters.max_iterations, 1, kMaxCount));
+    parameters.adaptive_iterations =
+        static_cast<std::int32_t>(object.integer("adaptive_iterations", parameters.adaptive_iterations, 0, kMaxCount));
     object.refuse_other_keys();
     try {
         validate(parameters);  // what 32-bit floats make of the numbers

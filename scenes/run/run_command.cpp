@@ -126,7 +126,7 @@ int run_command(const RunOptions& options) {
     if (options.out) {
         std::printf("  frames                 %s: cloth.pvd for ParaView, cloth.obj and cloth.pc2 for Blender\n",
                     options.out->string().c_str());
-        std::printf("  pictures               python3 scenes/pictures/render.py %s\n", options.out->string().c_str());
+        std::printf("  pictures               scenes/pictures/render.py %s\n", options.out->string().c_str());
     }
     if (const std::string advice = convergence_advice(report); !advice.empty()) warn(advice);
     if (simulation.unconverged_spring_solves() > 0) {

@@ -70,6 +70,7 @@ using Integrator = std::variant<NoIntegrator, ImplicitSpringsIntegrator, StandAl
 struct StrainLimiting {
     Matrix matrix = Matrix::consistent;
     Apply apply = Apply::matrix_free;
+    Execution execution = Execution::automatic;
     Parameters parameters;              ///< time_step is the scene's
     std::vector<float> regularization;  ///< α ≥ 1, [T]; empty where one number does for all
 };

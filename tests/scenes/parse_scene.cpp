@@ -59,6 +59,8 @@ TEST_CASE("a stage that is named without values takes the defaults of the stage"
     CHECK(scene.strain_limiting->parameters.target_area_change == defaults.target_area_change);
     CHECK(scene.strain_limiting->parameters.tolerance == defaults.tolerance);
     CHECK(scene.strain_limiting->parameters.max_iterations == defaults.max_iterations);
+    CHECK(scene.strain_limiting->parameters.adaptive_iterations == defaults.adaptive_iterations);
+    CHECK(scene.strain_limiting->execution == Execution::automatic);
     CHECK(scene.strain_limiting->regularization.empty());
     CHECK(scene.colliders.size() == 3);
 }
@@ -73,7 +75,8 @@ TEST_CASE("every value is taken from where it stands") {
                  {"vertices": [0], "motion": {"translate": {"velocity": [0, 1, 0]}}}],
         "integrator": {"stand_alone": {"bend_stiffness": 50, "damping": 0}},
         "strain_limiting": {"matrix": "printed", "apply": "assembled_csr", "regularization": 2.5, "sub_steps": 3,
-                            "target_area_change": 0.01, "tolerance": 0.001, "max_iterations": 9},
+                            "target_area_change": 0.01, "tolerance": 0.001, "max_iterations": 9,
+                            "adaptive_iterations": 6, "execution": "many_groups"},
         "colliders": [{"sphere": {"center": [0, 1, 0], "radius": 0.2, "friction": 0.5, "thickness": 0.01}},
                       {"plane": {"point": [0, -1, 0], "normal": [0, 2, 0]}},
                       {"capsule": {"a": [0, 0, 0], "b": [0, 1, 0], "radius": 0.05}}]})");
@@ -114,6 +117,8 @@ TEST_CASE("every value is taken from where it stands") {
     CHECK(limiting.parameters.target_area_change == 0.01f);
     CHECK(limiting.parameters.tolerance == 0.001f);
     CHECK(limiting.parameters.max_iterations == 9);
+    CHECK(limiting.parameters.adaptive_iterations == 6);
+    CHECK(limiting.execution == Execution::many_groups);
 
     const Sphere& sphere = std::get<Sphere>(scene.colliders[0]);
     CHECK(sphere.center == std::array<double, 3>{0, 1, 0});
@@ -153,8 +158,8 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "color: unknown key, expected one of mesh, density, pins, gravity, time_step, steps_per_frame, frames, "
          "integrator, strain_limiting, colliders"},
         {R"("strain_limiting": {"alpha": 2})",
-         "strain_limiting.alpha: unknown key, expected one of matrix, apply, regularization, sub_steps, "
-         "target_area_change, tolerance, max_iterations"},
+         "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, regularization, "
+         "sub_steps, target_area_change, tolerance, max_iterations, adaptive_iterations"},
         {R"("strain_limiting": {"regularization": 0.99})",
          "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
         {R"("strain_limiting": {"regularization": [1, 0.5]})",
@@ -163,6 +168,10 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("strain_limiting": {"sub_steps": -1})", "strain_limiting.sub_steps: expected a whole number from 0"},
         {R"("strain_limiting": {"max_iterations": 0})",
          "strain_limiting.max_iterations: expected a whole number from 1"},
+        {R"("strain_limiting": {"adaptive_iterations": -1})",
+         "strain_limiting.adaptive_iterations: expected a whole number from 0"},
+        {R"("strain_limiting": {"execution": "one_group", "apply": "assembled_csr"})",
+         "strain_limiting.execution: one_group needs the consistent matrix, matrix_free"},
         {R"("strain_limiting": {"target_area_change": -0.1})",
          "strain_limiting.target_area_change: expected a number ≥ 0, got -0.1"},
         {R"("strain_limiting": {"matrix": "exact"})",
