@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The figures that docs/accuracy.md states, held on the program's own scenes, on the first OpenCL device.
+
+Usage: acceptance_test.py APSL_PROGRAM PROJECT_FOLDER CASE [unittest's arguments]
+CASE is one of the classes below. A case runs its scenes once and then judges reports and frames.
+"""
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+program, project = (Path(argument).resolve() for argument in sys.argv[1:3])
+
+
+def read_frame(folder, number):
+    """(positions in m [V, 3], triangles [T, 3]) at the end of a frame."""
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(str(folder / f"frame_{number:04}.vtp"))
+    reader.Update()
+    surface = reader.GetOutput()
+    positions = vtk_to_numpy(surface.GetPoints().GetData()).astype(np.float64)
+    return positions, vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+def areas(positions, triangles):
+    """m², [T]."""
+    corners = positions[triangles]
+    return 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+
+
+class Case(unittest.TestCase):
+    """Runs scenes into a folder that goes with the case."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.run_scenes()
+
+    @classmethod
+    def folder(cls, name):
+        return Path(cls.temporary.name) / name
+
+    @classmethod
+    def run_scene(cls, name, scene, *arguments, frames_wanted=False):
+        """The report of one run, which must end well."""
+        report = cls.folder(f"{name}.json")
+        command = [program, "run", project / "scenes" / scene, "--report", report, *arguments]
+        if frames_wanted:
+            command += ["--out", cls.folder(name)]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise AssertionError(f"{' '.join(map(str, command))}: exit code {done.returncode}: {done.stderr}")
+        return json.loads(report.read_text())
+
+
+class Curtain(Case):
+    """scenes/curtain.json against the same scene without the filter."""
+
+    @classmethod
+    def run_scenes(cls):
+        cls.filtered = cls.run_scene("curtain", "curtain.json", frames_wanted=True)
+        cls.unfiltered = cls.run_scene("unfiltered", "curtain_unfiltered.json")
+
+    def test_area_change_is_limited(self):
+        summary = self.filtered["summary"]
+        self.assertEqual(self.filtered["backend"], "opencl")
+        self.assertEqual(len(self.filtered["frames"]), 180)
+        self.assertEqual(summary["status"], "ok")
+        self.assertLessEqual(summary["max_area_change"], 0.10)
+        self.assertLessEqual(summary["mean_max_area_change"], 0.05)
+        self.assertLessEqual(summary["cg_iterations_per_solve"], 4.0)
+
+    def test_without_the_filter_it_is_not(self):
+        self.assertEqual(len(self.unfiltered["frames"]), 180)
+        self.assertGreater(self.unfiltered["summary"]["max_area_change"], 0.5)
+
+    def test_both_scenes_differ_in_the_filter_alone(self):
+        scenes = [json.loads((project / "scenes" / name).read_text())
+                  for name in ("curtain.json", "curtain_unfiltered.json")]
+        del scenes[0]["strain_limiting"]
+        self.assertEqual(*scenes)
+
+    def test_pinned_vertices_do_not_move_by_one_bit(self):
+        pinned = json.loads((project / "scenes/curtain.json").read_text())["pins"][0]["vertices"]
+        at_rest = np.array([[-0.5, 0.0, -0.5], [0.5, 0.0, -0.5]])  # m, the corners of the grid in row 0
+        for number in range(180):
+            positions, _ = read_frame(self.folder("curtain"), number)
+            self.assertEqual(positions[pinned].tobytes(), at_rest.tobytes(), f"frame {number}")
+
+
+class PaperFigures(Case):
+    """The paper's 96.3 % to 1.94 % (Fig. 1) and 4.77 % in the stand-alone mode (Fig. 6)."""
+
+    @classmethod
+    def run_scenes(cls):
+        cls.figure_1 = cls.run_scene("figure_1", "paper_fig1.json")
+        cls.figure_1_unfiltered = cls.run_scene("unfiltered", "paper_fig1.json", "--set", "strain_limiting=null")
+        cls.figure_6 = cls.run_scene("figure_6", "paper_fig6.json")
+
+    def test_figure_1(self):
+        self.assertEqual(self.figure_1["summary"]["status"], "ok")
+        self.assertLessEqual(self.figure_1["summary"]["max_area_change"], 0.0194)
+        self.assertNotIn("strain_limiting", self.figure_1_unfiltered["stages"])
+        self.assertGreaterEqual(self.figure_1_unfiltered["summary"]["max_area_change"], 0.9)
+
+    def test_figure_6(self):
+        self.assertEqual(self.figure_6["stages"], ["stand_alone", "strain_limiting"])
+        self.assertEqual(self.figure_6["summary"]["status"], "ok")
+        self.assertLessEqual(self.figure_6["summary"]["max_area_change"], 0.0477)
+
+
+class Backends(Case):
+    """OpenCL in 32-bit floats against the reference in double precision, 60 frames of the curtain."""
+
+    # The motion is chaotic: after some 20 frames the two are different motions of the same cloth. Summaries are then
+    # compared by their ratio; the greatest value of one triangle in one frame is allowed more than the means.
+    RATIOS = {"max_area_change": 1.25, "mean_max_area_change": 1.05, "rms_area_change": 1.05,
+              "cg_iterations_per_solve": 1.05}
+
+    @classmethod
+    def run_scenes(cls):
+        cls.opencl = cls.run_scene("opencl", "curtain.json", "--frames", "60", frames_wanted=True)
+        cls.reference = cls.run_scene("reference", "curtain.json", "--frames", "60", "--backend", "reference",
+                                      frames_wanted=True)
+
+    def test_areas_agree_triangle_by_triangle_over_the_first_10_frames(self):
+        self.assertEqual((self.opencl["backend"], self.reference["backend"]), ("opencl", "reference"))
+        rest_area = 0.5 / 64**2  # m², every triangle of the grid
+        for number in range(10):
+            computed, expected = (areas(*read_frame(self.folder(name), number)) for name in ("opencl", "reference"))
+            self.assertEqual(len(computed), 8192)
+            self.assertLessEqual(abs(computed - expected).max() / rest_area, 0.002, f"frame {number}")
+
+    def test_summaries_are_alike(self):
+        for field, ratio in self.RATIOS.items():
+            with self.subTest(field=field):
+                computed, expected = self.opencl["summary"][field], self.reference["summary"][field]
+                self.assertLessEqual(max(computed, expected), ratio * min(computed, expected))
+
+
+class Repeated(Case):
+    """Two runs on one device: the same bytes, for both ways to divide a call."""
+
+    @classmethod
+    def run_scenes(cls):
+        for execution in ("many_groups", "one_group"):
+            for run in ("first", "second"):
+                cls.run_scene(f"{execution}_{run}", "curtain.json", "--frames", "40", "--set",
+                              f"strain_limiting.execution={execution}", frames_wanted=True)
+
+    def test_same_bytes(self):
+        for execution in ("many_groups", "one_group"):
+            first, second = self.folder(f"{execution}_first"), self.folder(f"{execution}_second")
+            names = sorted(path.name for path in first.iterdir() if path.suffix in (".vtp", ".pc2"))
+            self.assertEqual(len(names), 41)
+            for name in names:
+                self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), f"{execution}, {name}")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], defaultTest=sys.argv[3])
