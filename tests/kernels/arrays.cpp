@@ -2,15 +2,38 @@
 #include "kernels/arrays.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace apsl::test {
 namespace {
 
+// Small and awkward, so that small cloths have several patches.
+constexpr std::uint32_t patch_triangles = 37;
+
 host::Adjacency adjacency_of(std::span<const Cloth> cloths, Matrix matrix) {
     std::vector<std::shared_ptr<const Topology>> topologies;
     for (const Cloth& cloth : cloths) topologies.push_back(cloth.topology);
-    return host::build_adjacency(topologies, matrix, true);
+    return host::build_adjacency(topologies, matrix, true, patch_triangles);
+}
+
+std::vector<std::uint32_t> vertex_places_of(const host::Adjacency& adjacency) {
+    std::vector<std::uint32_t> places(adjacency.vertex_count);
+    for (std::uint32_t place = 0; place < adjacency.vertex_count; ++place)
+        places[adjacency.vertex_order[place]] = place;
+    return places;
+}
+
+std::vector<std::vector<std::uint32_t>> triangle_places_of(const host::Adjacency& adjacency) {
+    std::vector<std::vector<std::uint32_t>> places;
+    std::uint32_t first_rest_area = 0;
+    for (const apsl_cloth& cloth : adjacency.cloths) {
+        places.emplace_back(cloth.triangle_count);
+        for (std::uint32_t place = cloth.triangle_begin; place < cloth.triangle_begin + cloth.triangle_count; ++place)
+            places.back()[adjacency.triangle_order[place] - first_rest_area] = place;
+        first_rest_area += cloth.triangle_count;
+    }
+    return places;
 }
 
 std::vector<ScaledSolve> solves_of(std::span<const Cloth> cloths, Matrix matrix, double alpha, bool per_triangle) {
@@ -22,14 +45,8 @@ std::vector<ScaledSolve> solves_of(std::span<const Cloth> cloths, Matrix matrix,
 }
 
 apsl_parameters device_parameters(const Parameters& p) {
-    return {p.time_step,
-            1.0f / p.time_step,
-            p.regularization,
-            p.target_area_change,
-            p.tolerance * p.tolerance,
-            p.sub_steps,
-            p.max_iterations,
-            0};
+    return {p.time_step, 1.0f / p.time_step, p.regularization,     p.target_area_change, p.tolerance * p.tolerance,
+            p.sub_steps, p.max_iterations,   p.adaptive_iterations};
 }
 
 // ‖r‖² of r = √(α D) r̄.
@@ -46,48 +63,58 @@ std::vector<apsl_solve_state> fresh_states(std::span<const ScaledSolve> solves) 
         state.stopped = 0;
         state.iterating = 1;
         state.initial_residual = static_cast<float>(squared_norm(solve, solve.right_hand_side));
-        state.has_pressure = 0;
+        state.solve_iterations = 0;
+        state.adaptive_factor = 1.0f;
         states.push_back(state);
     }
     return states;
 }
 
-std::vector<cl_float4> predicted_of(std::span<const Cloth> cloths) {
-    std::vector<cl_float4> all;
+std::vector<cl_float4> predicted_of(std::span<const Cloth> cloths, const std::vector<std::uint32_t>& places) {
+    std::vector<cl_float4> all(places.size());
+    std::size_t i = 0;
     for (const Cloth& cloth : cloths)
-        for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v)
-            all.push_back(
-                {{static_cast<float>(cloth.positions[3 * v]), static_cast<float>(cloth.positions[3 * v + 1]),
-                  static_cast<float>(cloth.positions[3 * v + 2]), static_cast<float>(cloth.inverse_masses[v])}});
+        for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v, ++i)
+            all[places[i]] = {
+                {static_cast<float>(cloth.positions[3 * v]), static_cast<float>(cloth.positions[3 * v + 1]),
+                 static_cast<float>(cloth.positions[3 * v + 2]), static_cast<float>(cloth.inverse_masses[v])}};
     return all;
 }
 
-// Scaled g_0 and (α − 1)/α, scaled g_1 and s; α from s² α D = 1.
-std::vector<cl_float8> gradients_of(std::span<const Cloth> cloths, std::span<const ScaledSolve> solves,
-                                    const host::Adjacency& adjacency, double alpha, bool per_triangle) {
-    std::vector<cl_float8> all(adjacency.triangle_count);
+// ḡ_k = s √(w_k / 2) g_k in units of 1/32767, and (α − 1)/α.
+std::vector<Gradients> gradients_of(std::span<const Cloth> cloths, std::span<const ScaledSolve> solves,
+                                    const host::Adjacency& adjacency,
+                                    const std::vector<std::vector<std::uint32_t>>& places, double alpha,
+                                    bool per_triangle) {
+    std::vector<Gradients> all(adjacency.triangle_count);
     for (std::size_t c = 0; c < cloths.size(); ++c)
         for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a) {
             const double own_alpha = per_triangle ? cloths[c].regularization[a] : alpha;
-            const double s = solves[c].scale[a];
-            const auto g0 = s * solves[c].geometry[a].gradients[0];
-            const auto g1 = s * solves[c].geometry[a].gradients[1];
-            cl_float8& out = all[adjacency.cloths[c].triangle_begin + a];
-            for (int k = 0; k < 3; ++k) {
-                out.s[k] = static_cast<float>(g0[k]);
-                out.s[4 + k] = static_cast<float>(g1[k]);
-            }
-            out.s[3] = static_cast<float>((own_alpha - 1.0) / own_alpha);
-            out.s[7] = static_cast<float>(s);
+            Gradients& out = all[places[c][a]];
+            out.shift = static_cast<float>((own_alpha - 1.0) / own_alpha);
+            for (int corner = 0; corner < 3; ++corner)
+                for (int k = 0; k < 3; ++k)
+                    out.corner[corner].s[k] =
+                        static_cast<cl_short>(std::lround(32767.0 * solves[c].scaled_gradients[a][corner][k]));
         }
     return all;
 }
 
-std::vector<float> values_of(std::span<const ScaledSolve> solves) {
-    std::vector<float> all;
-    for (const ScaledSolve& solve : solves)
-        std::transform(solve.rows.valuePtr(), solve.rows.valuePtr() + solve.rows.nonZeros(), std::back_inserter(all),
-                       [](double value) { return static_cast<float>(value); });
+// The scaled matrix in the arrays' order of rows and of entries.
+std::vector<float> values_of(std::span<const ScaledSolve> solves, const host::Adjacency& adjacency,
+                             const std::vector<std::vector<std::uint32_t>>& places) {
+    std::vector<float> all(adjacency.columns.size());
+    for (std::size_t c = 0; c < solves.size(); ++c) {
+        std::vector<Eigen::Index> triangle_at(adjacency.cloths[c].triangle_count);
+        for (std::size_t a = 0; a < triangle_at.size(); ++a)
+            triangle_at[places[c][a] - adjacency.cloths[c].triangle_begin] = static_cast<Eigen::Index>(a);
+        for (std::size_t a = 0; a < triangle_at.size(); ++a)
+            for (std::uint32_t e = adjacency.row_offsets[places[c][a]]; e < adjacency.row_offsets[places[c][a] + 1];
+                 ++e)
+                all[e] = static_cast<float>(
+                    solves[c].rows.coeff(static_cast<Eigen::Index>(a),
+                                         triangle_at[adjacency.columns[e] - adjacency.cloths[c].triangle_begin]));
+    }
     return all;
 }
 
@@ -111,6 +138,8 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
     : sources(source_cloths),
       solves(solves_of(source_cloths, matrix, p.regularization, alpha_per_triangle)),
       adjacency(adjacency_of(source_cloths, matrix)),
+      vertex_places(vertex_places_of(adjacency)),
+      triangle_places(triangle_places_of(adjacency)),
       groups(group_count),
       position_placement(position),
       velocity_placement(velocity),
@@ -120,19 +149,23 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       states(fresh_states(solves)),
       stats(std::vector<apsl_stats>(source_cloths.size(), apsl_stats{})),
       partials(poison<float>(source_cloths.size() * APSL_PARTIAL_KINDS * group_count)),
+      vertex_order(adjacency.vertex_order),
+      triangle_order(adjacency.triangle_order),
       triangles(adjacency.triangles),
       corner_offsets(adjacency.corner_offsets),
       corners(adjacency.corners),
       row_offsets(adjacency.row_offsets),
       columns(adjacency.columns),
       shared(adjacency.shared),
-      predicted(predicted_of(source_cloths)),
-      gradients(gradients_of(source_cloths, solves, adjacency, p.regularization, alpha_per_triangle)),
+      patches(adjacency.patches),
+      patch_vertices(adjacency.patch_vertices),
+      local_triangles(adjacency.local_triangles),
+      predicted(predicted_of(source_cloths, vertex_places)),
+      gradients(gradients_of(source_cloths, solves, adjacency, triangle_places, p.regularization, alpha_per_triangle)),
       residual(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].right_hand_side[a]; })),
       damped_diagonal(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].damped_diagonal[a]; })),
-      values(values_of(solves)),
-      vertex_forces(poison<cl_float4>(adjacency.vertex_count)),
-      product(poison<float>(adjacency.triangle_count)),
+      values(values_of(solves, adjacency, triangle_places)),
+      product(poisoned_triangles()),
       direction(poison<float>(adjacency.triangle_count)),
       direction_product(poison<float>(adjacency.triangle_count)),
       pressure(poison<float>(adjacency.triangle_count)),
@@ -149,15 +182,30 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
 }
 
 std::vector<double> Arrays::of_cloth(const std::vector<float>& per_triangle, std::size_t cloth) const {
-    const auto begin = per_triangle.begin() + adjacency.cloths[cloth].triangle_begin;
-    return {begin, begin + adjacency.cloths[cloth].triangle_count};
+    std::vector<double> numbers;
+    for (const std::uint32_t place : triangle_places[cloth]) numbers.push_back(per_triangle[place]);
+    return numbers;
+}
+
+std::vector<float> Arrays::padding_of(const std::vector<float>& per_triangle) const {
+    std::vector<float> padding;
+    for (std::size_t c = 0; c < cloth_count(); ++c) {
+        const std::size_t end = c + 1 < cloth_count() ? adjacency.cloths[c + 1].triangle_begin : per_triangle.size();
+        for (std::size_t n = adjacency.cloths[c].triangle_begin + adjacency.cloths[c].triangle_count; n < end; ++n)
+            padding.push_back(per_triangle[n]);
+    }
+    return padding;
+}
+
+std::vector<float> Arrays::poisoned_triangles() const {
+    return over_triangles([](std::size_t, std::size_t) { return static_cast<double>(poison<float>(1)[0]); });
 }
 
 std::vector<float> Arrays::over_triangles(const std::function<double(std::size_t, std::size_t)>& value) const {
     std::vector<float> all(adjacency.triangle_count, 0.0f);
     for (std::size_t c = 0; c < cloth_count(); ++c)
-        for (std::size_t a = 0; a < adjacency.cloths[c].triangle_count; ++a)
-            all[adjacency.cloths[c].triangle_begin + a] = static_cast<float>(value(c, a));
+        for (std::size_t a = 0; a < triangle_places[c].size(); ++a)
+            all[triangle_places[c][a]] = static_cast<float>(value(c, a));
     return all;
 }
 

@@ -18,6 +18,14 @@ struct Placement {
     std::uint64_t offset = 0;
 };
 
+/// A triangle's stored gradients (kernels/gradients.h): 16-bit fixed point.
+struct Gradients {
+    cl_short4 corner[3];  ///< w is zero
+    float shift;          ///< (α − 1)/α
+    float unused;
+};
+static_assert(sizeof(Gradients) == 32);
+
 /// Every array of a limiter in guarded device memory, for one or more cloths: inputs as the reference has them, outputs
 /// poisoned. A test overwrites what it wants otherwise.
 struct Arrays {
@@ -28,6 +36,8 @@ struct Arrays {
     std::span<const Cloth> sources;
     std::vector<ScaledSolve> solves;  ///< one a cloth
     host::Adjacency adjacency;
+    std::vector<std::uint32_t> vertex_places;                 ///< the caller's vertex → its place in the arrays
+    std::vector<std::vector<std::uint32_t>> triangle_places;  ///< likewise the triangles of each cloth
     std::uint32_t groups;
     Placement position_placement, velocity_placement;
     std::uint64_t array_offset;  ///< of inverse masses, rest areas and regularization, floats
@@ -37,21 +47,28 @@ struct Arrays {
     DeviceArray<apsl_solve_state> states;
     DeviceArray<apsl_stats> stats;
     DeviceArray<float> partials;
-    DeviceArray<std::uint32_t> triangles, corner_offsets, corners, row_offsets, columns;
+    DeviceArray<std::uint32_t> vertex_order, triangle_order, triangles, corner_offsets, corners, row_offsets, columns;
     DeviceArray<std::uint8_t> shared;
+    DeviceArray<cl_uint2> patches;
+    DeviceArray<std::uint32_t> patch_vertices;
+    DeviceArray<std::uint16_t> local_triangles;
     DeviceArray<cl_float4> predicted;  ///< positions and inverse masses
-    DeviceArray<cl_float8> gradients;  ///< scaled
-    DeviceArray<float> residual;       ///< the scaled right-hand side
+    DeviceArray<Gradients> gradients;
+    DeviceArray<float> residual;  ///< the scaled right-hand side
     DeviceArray<float> damped_diagonal;
-    DeviceArray<float> values;             ///< the scaled matrix
-    DeviceArray<cl_float4> vertex_forces;  ///< poisoned, as the rest of the internal arrays
-    DeviceArray<float> product, direction, direction_product, pressure;
+    DeviceArray<float> values;   ///< the scaled matrix
+    DeviceArray<float> product;  ///< poisoned, 0 in the padding; the rest is poisoned there too
+    DeviceArray<float> direction, direction_product, pressure;
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
 
     std::size_t cloth_count() const { return sources.size(); }
-    /// The cloth's numbers out of an array over (padded) triangles.
+    /// The cloth's numbers out of an array over (padded) triangles, in the caller's order.
     std::vector<double> of_cloth(const std::vector<float>& per_triangle, std::size_t cloth) const;
-    /// One number a triangle for every cloth, as the kernels lay them out; 0 in the padding.
+    /// What an array over triangles holds in the padding.
+    std::vector<float> padding_of(const std::vector<float>& per_triangle) const;
+    /// Every bit set, but 0 in the padding: what the host sees to.
+    std::vector<float> poisoned_triangles() const;
+    /// One number a triangle (in the caller's order) for every cloth, as the kernels lay them out; 0 in the padding.
     std::vector<float> over_triangles(const std::function<double(std::size_t cloth, std::size_t a)>& value) const;
     /// ‖r‖² in m⁴ of the scaled residual r̄ at hand.
     double unscaled_squared(std::size_t cloth, const std::vector<double>& scaled) const;

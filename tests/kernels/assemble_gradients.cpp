@@ -3,6 +3,7 @@
 #include "support/tolerances.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
@@ -42,29 +43,36 @@ void check_area_sums(const Arrays& arrays) {
     }
 }
 
+// What vector loads of later kernels read beyond a cloth's last triangle.
+void check_padding(const Arrays& arrays) {
+    for (const DeviceArray<float>* array : {&arrays.residual, &arrays.damped_diagonal})
+        for (const float number : arrays.padding_of(array->read())) CHECK(number == 0.0f);
+}
+
 void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
-    const std::vector<cl_float8> gradients = arrays.gradients.read();
+    const std::vector<Gradients> gradients = arrays.gradients.read();
     const std::vector<float> residual = arrays.residual.read();
     const double common_alpha = static_cast<double>(arrays.parameters.read()[0].regularization);
     for (std::size_t c = 0; c < arrays.cloth_count(); ++c) {
         const ScaledSolve& solve = arrays.solves[c];
-        std::vector<double> got, want, residual_scale, areas;
+        std::vector<double> residual_scale, areas;
+        double farthest = 0.0;
         for (std::size_t a = 0; a < solve.scale.size(); ++a) {
-            const cl_float8& g = gradients[arrays.adjacency.cloths[c].triangle_begin + a];
+            const Gradients& stored = gradients[arrays.triangle_places[c][a]];
             const double alpha = alpha_per_triangle ? arrays.sources[c].regularization[a] : common_alpha;
-            for (int k = 0; k < 3; ++k) {
-                got.push_back(static_cast<double>(g.s[k]));
-                want.push_back(solve.scale[a] * solve.geometry[a].gradients[0][k]);
-                got.push_back(static_cast<double>(g.s[4 + k]));
-                want.push_back(solve.scale[a] * solve.geometry[a].gradients[1][k]);
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                for (int k = 0; k < 3; ++k)
+                    farthest = std::max(farthest, std::abs(stored.corner[corner].s[k] * gradient_unit -
+                                                           solve.scaled_gradients[a][corner][k]));
+                CHECK(stored.corner[corner].s[3] == 0);
             }
-            CHECK(std::abs(static_cast<double>(g.s[3]) - (alpha - 1.0) / alpha) <= elementwise_tolerance(2));
-            CHECK(std::abs(static_cast<double>(g.s[7]) - solve.scale[a]) <= elementwise_tolerance(12) * solve.scale[a]);
+            CHECK(std::abs(static_cast<double>(stored.shift) - (alpha - 1.0) / alpha) <= elementwise_tolerance(2));
             residual_scale.push_back(solve.scale[a] * solve.geometry[a].area);
             areas.push_back(solve.geometry[a].area);
         }
-        // Edge, cross product, normal, cross product, scale: about thirty roundings.
-        CHECK(difference(got, want) <= elementwise_tolerance(30) * norm(want));
+        // Half a unit, and what goes in: edge, cross product, normal, cross product, scale, about thirty roundings of
+        // numbers of at most 1.
+        CHECK(farthest <= 0.5 * gradient_unit + elementwise_tolerance(30));
         const double residual_error = elementwise_tolerance(20) * norm(residual_scale);
         CHECK(difference(arrays.of_cloth(residual, c), solve.right_hand_side) <= residual_error);
         const double scaled_norm = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_SCALED_RESIDUAL_EVEN)));
@@ -78,12 +86,13 @@ void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
         CHECK(difference(arrays.of_cloth(arrays.damped_diagonal.read(), c), solve.damped_diagonal) <=
               elementwise_tolerance(12) * norm(solve.damped_diagonal));
     }
+    check_padding(arrays);
 }
 
 void poison_outputs(Arrays& arrays) {
-    arrays.gradients.write(poison<cl_float8>(arrays.gradients.size()));
-    arrays.residual.write(poison<float>(arrays.residual.size()));
-    arrays.damped_diagonal.write(poison<float>(arrays.damped_diagonal.size()));
+    arrays.gradients.write(poison<Gradients>(arrays.gradients.size()));
+    arrays.residual.write(arrays.poisoned_triangles());
+    arrays.damped_diagonal.write(arrays.poisoned_triangles());
     arrays.partials.write(poison<float>(arrays.partials.size()));
 }
 
@@ -129,8 +138,8 @@ TEST_CASE("assemble_gradients: writes no triangle of a stopped cloth", "[assembl
     poison_outputs(arrays);
     arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
     launch::assemble_gradients(arrays, {});
-    CHECK(same_bytes(arrays.gradients.read(), poison<cl_float8>(arrays.gradients.size())));
-    CHECK(same_bytes(arrays.residual.read(), poison<float>(arrays.residual.size())));
+    CHECK(same_bytes(arrays.gradients.read(), poison<Gradients>(arrays.gradients.size())));
+    CHECK(same_bytes(arrays.residual.read(), arrays.poisoned_triangles()));
 }
 
 TEST_CASE("assemble_gradients: a triangle without area, free vertices or rest area has no part in the solve",
@@ -141,21 +150,40 @@ TEST_CASE("assemble_gradients: a triangle without area, free vertices or rest ar
         cloths[0].inverse_masses[4 + k] = 0.0;                // triangle 4 is pinned
     }
     cloths[0].rest_areas[8] = 0.0;
-    Arrays arrays(cloths, Matrix::printed, {}, 1);
-    poison_outputs(arrays);
-    launch::assemble_gradients(arrays, {});
-    const std::vector<cl_float8> gradients = arrays.gradients.read();
-    for (int k : {0, 1, 2, 4, 5, 6}) {
-        CHECK(gradients[0].s[k] == 0.0f);
-        CHECK(gradients[4].s[k] == 0.0f);
-        CHECK(gradients[8].s[k] == 0.0f);
+    for (const std::uint32_t group : {1u, 64u}) {
+        Arrays arrays(cloths, Matrix::printed, {}, 1);
+        poison_outputs(arrays);
+        launch::assemble_gradients(arrays, {.work_group_size = group});
+        const std::vector<Gradients> gradients = arrays.gradients.read();
+        const std::vector<double> residual = arrays.of_cloth(arrays.residual.read(), 0);
+        for (const std::size_t a : {0, 4, 8})
+            for (const cl_short4& corner : gradients[arrays.triangle_places[0][a]].corner)
+                for (const cl_short component : corner.s) CHECK(component == 0);
+        CHECK(residual[4] == 0.0);
+        CHECK(residual[8] == 0.0);
+        CHECK(arrays.partials_of(0, APSL_PARTIAL_MEASURED)[0] == 8.0);
+        CHECK(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)[0] == 0.0);
+        CHECK(std::isfinite(arrays.partials_of(0, APSL_PARTIAL_SQUARED_CHANGE)[0]));
+        CHECK(std::isfinite(arrays.partials_of(0, APSL_PARTIAL_RESIDUAL_EVEN)[0]));
     }
-    CHECK(arrays.residual.read()[4] == 0.0f);
-    CHECK(arrays.residual.read()[8] == 0.0f);
-    CHECK(arrays.partials_of(0, APSL_PARTIAL_MEASURED)[0] == 8.0);
-    CHECK(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)[0] == 0.0);
-    CHECK(std::isfinite(arrays.partials_of(0, APSL_PARTIAL_SQUARED_CHANGE)[0]));
-    CHECK(std::isfinite(arrays.partials_of(0, APSL_PARTIAL_RESIDUAL_EVEN)[0]));
+}
+
+TEST_CASE("assemble_gradients: alpha as the adaptive factor raises it", "[assemble_gradients]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(50), 1)};
+    for (const auto& [alpha, factor, raised] : {std::array{1.2, 1.0, 1.2}, std::array{1.2, 4.0, 1.8},
+                                                std::array{1.0, 2.0, 1.05}, std::array{1.01, 8.0, 1.36}}) {
+        CAPTURE(alpha, factor);
+        Arrays arrays(cloths, Matrix::printed, {.regularization = static_cast<float>(alpha)}, 2);
+        arrays.edit_states([&](apsl_solve_state& state) { state.adaptive_factor = static_cast<float>(factor); });
+        launch::assemble_gradients(arrays, {});
+        std::vector<double> expected = arrays.solves[0].damped_diagonal;
+        for (double& damped : expected) damped *= raised / static_cast<double>(static_cast<float>(alpha));
+        CHECK(difference(arrays.of_cloth(arrays.damped_diagonal.read(), 0), expected) <=
+              elementwise_tolerance(14) * norm(expected));
+        for (const std::uint32_t place : arrays.triangle_places[0])
+            CHECK(std::abs(static_cast<double>(arrays.gradients.read()[place].shift) - (raised - 1.0) / raised) <=
+                  elementwise_tolerance(4));
+    }
 }
 
 TEST_CASE("measure_area_change: awkward sizes in every work-group size", "[measure_area_change]") {
@@ -171,16 +199,17 @@ TEST_CASE("measure_area_change: awkward sizes in every work-group size", "[measu
 }
 
 TEST_CASE("measure_area_change: counts the triangles that are not finite", "[measure_area_change]") {
-    for (const double bad : {std::nan(""), static_cast<double>(INFINITY), -static_cast<double>(INFINITY), 3e38}) {
-        CAPTURE(bad);
-        const std::vector<Cloth> cloths{make_cloth(strip(40), 1)};
-        Arrays arrays(cloths, Matrix::printed, {}, 2);
-        std::vector<cl_float4> predicted = arrays.predicted.read();
-        predicted[20].s[1] = static_cast<float>(bad);  // at three triangles of the strip
-        arrays.predicted.write(predicted);
-        launch::measure_area_change(arrays, {});
-        CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)) == 3.0);
-        launch::assemble_gradients(arrays, {});
-        CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)) == 3.0);
-    }
+    for (const double bad : {std::nan(""), static_cast<double>(INFINITY), -static_cast<double>(INFINITY), 3e38})
+        for (const std::uint32_t group : {1u, 64u}) {
+            CAPTURE(bad, group);
+            const std::vector<Cloth> cloths{make_cloth(strip(40), 1)};
+            Arrays arrays(cloths, Matrix::printed, {}, 2);
+            std::vector<cl_float4> predicted = arrays.predicted.read();
+            predicted[arrays.vertex_places[20]].s[1] = static_cast<float>(bad);  // at three triangles of the strip
+            arrays.predicted.write(predicted);
+            launch::measure_area_change(arrays, {.work_group_size = group});
+            CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)) == 3.0);
+            launch::assemble_gradients(arrays, {.work_group_size = group});
+            CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)) == 3.0);
+        }
 }

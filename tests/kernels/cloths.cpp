@@ -57,6 +57,10 @@ ScaledSolve scaled_solve(const Cloth& cloth, Matrix matrix, const std::vector<do
         const double d = solve.rows.coeff(a, a);
         solve.damped_diagonal.push_back(d);
         solve.scale.push_back(d > 0.0 ? 1.0 / std::sqrt(d) : 0.0);
+        std::array<Eigen::Vector3d, 3>& gradients = solve.scaled_gradients.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k)
+            gradients[k] = solve.scale[a] * std::sqrt(cloth.inverse_masses[cloth.topology->triangles()[a][k]] / 2.0) *
+                           solve.geometry[a].gradients[k];
         solve.right_hand_side.push_back(solve.scale[a] * (solve.geometry[a].area - cloth.rest_areas[a]));
     }
     const Eigen::Map<const Eigen::VectorXd> s(solve.scale.data(), solve.rows.rows());

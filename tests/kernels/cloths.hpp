@@ -8,6 +8,7 @@
 #include <apsl/parameters.hpp>
 #include <apsl/topology.hpp>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -36,10 +37,11 @@ std::vector<double> random_numbers(std::size_t count, double low, double high, s
 /// What the reference makes of a cloth at its present positions, in the scaled unknowns of kernels/gradients.h.
 struct ScaledSolve {
     std::vector<reference::TriangleGeometry<double>> geometry;
-    std::vector<double> scale;             ///< s = 1/√(α D), 0 where D is
-    std::vector<double> damped_diagonal;   ///< α D
-    std::vector<double> right_hand_side;   ///< s (A − A⁰)
-    reference::SparseMatrix<double> rows;  ///< S (G + (α − 1) D) S
+    std::vector<double> scale;                                     ///< s = 1/√(α D), 0 where D is
+    std::vector<std::array<Eigen::Vector3d, 3>> scaled_gradients;  ///< ḡ_k = s √(w_k / 2) g_k, of each corner
+    std::vector<double> damped_diagonal;                           ///< α D
+    std::vector<double> right_hand_side;                           ///< s (A − A⁰)
+    reference::SparseMatrix<double> rows;                          ///< S (G + (α − 1) D) S
 };
 
 ScaledSolve scaled_solve(const Cloth& cloth, Matrix matrix, const std::vector<double>& alpha);

@@ -12,7 +12,7 @@ using namespace apsl::test;
 namespace {
 
 void with_pressure(Arrays& arrays) {
-    arrays.edit_states([](apsl_solve_state& state) { state.has_pressure = 1; });
+    arrays.edit_states([](apsl_solve_state& state) { state.solve_iterations = 3; });
     arrays.pressure.write(arrays.over_triangles([](std::size_t c, std::size_t a) {
         return 0.01 * std::cos(2.3 * static_cast<double>(a) + static_cast<double>(c));
     }));
@@ -31,9 +31,9 @@ void check_displaced(Arrays& arrays, const Build& build) {
         std::vector<double> moves;
         reference::displacements<double>(*cloth.topology, arrays.solves[c].geometry, cloth.inverse_masses, lambda,
                                          moves);
-        std::vector<double> got, want, scale;
+        std::vector<double> got, want, scale, stored;
         for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v) {
-            const std::size_t i = arrays.adjacency.cloths[c].vertex_begin + v;
+            const std::size_t i = arrays.vertex_places[arrays.adjacency.cloths[c].vertex_begin + v];
             for (std::size_t k = 0; k < 3; ++k) {
                 got.push_back(static_cast<double>(after[i].s[k]));
                 want.push_back(cloth.positions[3 * v + k] + moves[3 * v + k]);
@@ -41,16 +41,20 @@ void check_displaced(Arrays& arrays, const Build& build) {
             }
             CHECK(after[i].s[3] == before[i].s[3]);
             // Magnitudes of the terms of the vertex' sum: they cancel.
-            double terms = 0.0;
+            double terms = 0.0, pressures = 0.0;
             for (std::uint32_t n = cloth.topology->corner_offsets()[v]; n < cloth.topology->corner_offsets()[v + 1];
                  ++n) {
                 const Corner corner = cloth.topology->corners()[n];
+                pressures += std::abs(pressure[arrays.triangle_places[c][corner / 3]]);
                 terms +=
                     std::abs(lambda[corner / 3]) * arrays.solves[c].geometry[corner / 3].gradients[corner % 3].norm();
             }
             scale.push_back(cloth.inverse_masses[v] * terms);
+            // √(2 w) Σ y ḡ, with half a unit of error in each of the three components of ḡ.
+            stored.push_back(std::sqrt(2.0 * cloth.inverse_masses[v]) * pressures * 0.5 * std::sqrt(3.0));
         }
-        CHECK(difference(got, want) <= elementwise_tolerance(8) * norm(scale) + elementwise_tolerance(1) * norm(want));
+        CHECK(difference(got, want) <= elementwise_tolerance(8) * norm(scale) + gradient_unit * norm(stored) +
+                                           elementwise_tolerance(1) * norm(want));
     }
 }
 
@@ -89,7 +93,7 @@ TEST_CASE("gather_displacements: moves nothing once stopped or without a pressur
     CHECK(same_bytes(before, arrays.predicted.read()));
     CHECK(arrays.stats.read()[0].residual == 0.0f);
 
-    arrays.edit_states([](apsl_solve_state& state) { state.stopped = state.has_pressure = 0; });
+    arrays.edit_states([](apsl_solve_state& state) { state.stopped = state.solve_iterations = 0; });
     arrays.pressure.write(poison<float>(arrays.pressure.size()));
     launch::gather_displacements(arrays, {}, 0);
     CHECK(same_bytes(before, arrays.predicted.read()));
@@ -115,4 +119,32 @@ TEST_CASE("gather_displacements: keeps the greatest residual and says where the 
     const apsl_stats met_again = end_with({0.2, 0.3, 0.14});
     CHECK(met_again.residual == missed.residual);
     CHECK(met_again.status == APSL_STATUS_NOT_CONVERGED);
+}
+
+TEST_CASE("gather_displacements: counts iterations and adapts alpha's factor", "[gather_displacements]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
+    Arrays arrays(cloths, Matrix::consistent, {.tolerance = 0.1f, .adaptive_iterations = 10}, 2);
+    with_pressure(arrays);
+    const auto factor_after = [&](float factor, int iterations, double relative_residual) {
+        arrays.edit_states([&](apsl_solve_state& state) {
+            state.initial_residual = 1.0f;
+            state.adaptive_factor = factor;
+            state.solve_iterations = iterations;
+        });
+        arrays.write_partial_sum(0, APSL_PARTIAL_RESIDUAL_EVEN, relative_residual * relative_residual);
+        launch::gather_displacements(arrays, {}, 0);
+        return arrays.states.read()[0].adaptive_factor;
+    };
+    CHECK(factor_after(4.0f, 11, 0.05) == 8.0f);  // too many
+    CHECK(factor_after(4.0f, 3, 0.2) == 8.0f);    // not converged
+    CHECK(factor_after(4.0f, 10, 0.05) == 4.0f);
+    CHECK(factor_after(4.0f, 6, 0.05) == 4.0f);
+    CHECK(factor_after(4.0f, 5, 0.05) == 2.0f);  // at most half
+    CHECK(factor_after(1.0f, 1, 0.05) == 1.0f);
+    CHECK(factor_after(1024.0f, 11, 0.05) == 1024.0f);
+    CHECK(arrays.stats.read()[0].cg_iterations == 11 + 3 + 10 + 6 + 5 + 1 + 11);
+
+    arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
+    CHECK(factor_after(4.0f, 11, 0.05) == 4.0f);
+    CHECK(arrays.stats.read()[0].cg_iterations == 47);
 }

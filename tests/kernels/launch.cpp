@@ -63,9 +63,16 @@ std::vector<std::uint32_t> awkward_sizes(std::uint32_t work_group_size) {
 
 namespace launch {
 
+void set_parameters(Arrays& a, const Build& build, const apsl_parameter_block& block, std::uint32_t first,
+                    std::uint32_t count) {
+    const host::Kernel& k = kernel(a, build, "set_parameters.cl", "set_parameters");
+    set_arguments(k, 0, a.parameters, block, cl_uint{first}, cl_uint{count});
+    run(k, 1, build, 1);
+}
+
 void predict_positions(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "predict_positions.cl", "predict_positions");
-    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.predicted, a.caller_positions,
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.predicted, a.caller_positions,
                   cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset},
                   a.inverse_masses, cl_ulong{a.array_offset});
     run(k, a.groups, build, a.cloth_count());
@@ -73,15 +80,16 @@ void predict_positions(Arrays& a, const Build& build) {
 
 void assemble_gradients(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "assemble_gradients");
-    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients, a.residual,
-                  a.damped_diagonal, a.rest_areas, cl_ulong{a.array_offset},
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangle_order, a.triangles, a.predicted,
+                  a.gradients, a.residual, a.damped_diagonal, a.rest_areas, cl_ulong{a.array_offset},
                   build.alpha_per_triangle ? a.regularization : a.rest_areas, cl_ulong{a.array_offset});
     run(k, a.groups, build, a.cloth_count());
 }
 
 void measure_area_change(Arrays& a, const Build& build) {
-    const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "measure_area_change");
-    set_arguments(k, 0, a.cloths, a.partials, a.triangles, a.predicted, a.rest_areas, cl_ulong{a.array_offset});
+    const host::Kernel& k = kernel(a, build, "measure_area_change.cl", "measure_area_change");
+    set_arguments(k, 0, a.cloths, a.partials, a.triangle_order, a.triangles, a.predicted, a.rest_areas,
+                  cl_ulong{a.array_offset});
     run(k, a.groups, build, a.cloth_count());
 }
 
@@ -119,21 +127,25 @@ void matrix_free_apply_dot(Arrays& a, const Build& build, int iteration) {
         run(k, a.groups, build, a.cloth_count());
         return;
     }
-    const host::Kernel& gather = kernel(a, build, "matrix_free_consistent.cl", "gather_vertex_forces");
-    set_arguments(gather, 0, a.cloths, a.parameters, a.states, a.partials, a.corner_offsets, a.corners, a.predicted,
-                  a.gradients, a.residual, a.vertex_forces, cl_int{iteration});
-    run(gather, a.groups, build, a.cloth_count());
-    const host::Kernel& apply = kernel(a, build, "matrix_free_consistent.cl", "matrix_free_apply_dot");
-    set_arguments(apply, 0, a.cloths, a.states, a.partials, a.triangles, a.gradients, a.vertex_forces, a.residual,
-                  a.product);
-    run(apply, a.groups, build, a.cloth_count());
+    const host::Kernel& k = kernel(a, build, "matrix_free_consistent.cl", "matrix_free_apply_dot");
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.patches, a.patch_vertices, a.local_triangles,
+                  a.corner_offsets, a.corners, a.gradients, a.residual, a.product, cl_int{iteration});
+    run(k, a.groups, build, a.cloth_count());
 }
 
 void cg_update(Arrays& a, const Build& build, int iteration) {
     const host::Kernel& k = kernel(a, build, "cg_update.cl", "cg_update");
-    set_arguments(k, 0, a.cloths, a.states, a.stats, a.partials, a.residual, a.damped_diagonal, a.product, a.direction,
+    set_arguments(k, 0, a.cloths, a.states, a.partials, a.residual, a.damped_diagonal, a.product, a.direction,
                   a.direction_product, a.pressure, cl_int{iteration});
     run(k, a.groups, build, a.cloth_count());
+}
+
+void finish_solve(Arrays& a, const Build& build, int iterations) {
+    const host::Kernel& k = kernel(a, build, "finish_solve.cl", "finish_solve");
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.patches, a.patch_vertices, a.local_triangles,
+                  a.corner_offsets, a.corners, a.gradients, a.residual, a.damped_diagonal, a.product, a.direction,
+                  a.direction_product, a.pressure, cl_uint{a.groups}, cl_int{iterations});
+    run(k, 1, build, a.cloth_count());
 }
 
 void gather_displacements(Arrays& a, const Build& build, std::uint32_t slot) {
@@ -145,9 +157,21 @@ void gather_displacements(Arrays& a, const Build& build, std::uint32_t slot) {
 
 void update_velocities(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "update_velocities.cl", "update_velocities");
-    set_arguments(k, 0, a.cloths, a.parameters, a.stats, a.predicted, a.caller_positions,
+    set_arguments(k, 0, a.cloths, a.parameters, a.stats, a.vertex_order, a.predicted, a.caller_positions,
                   cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset});
     run(k, a.groups, build, a.cloth_count());
+}
+
+void filter_in_one_group(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "filter_in_one_group.cl", "filter_in_one_group");
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.triangle_order, a.triangles,
+                  a.patches, a.patch_vertices, a.local_triangles, a.corner_offsets, a.corners, a.predicted, a.gradients,
+                  a.residual, a.damped_diagonal, a.product, a.direction, a.direction_product, a.pressure,
+                  a.caller_positions, cl_ulong{a.position_placement.offset}, a.caller_velocities,
+                  cl_ulong{a.velocity_placement.offset}, a.inverse_masses, cl_ulong{a.array_offset}, a.rest_areas,
+                  cl_ulong{a.array_offset}, build.alpha_per_triangle ? a.regularization : a.rest_areas,
+                  cl_ulong{a.array_offset});
+    run(k, 1, build, a.cloth_count());
 }
 
 }  // namespace launch

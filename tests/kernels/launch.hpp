@@ -25,6 +25,8 @@ std::vector<std::uint32_t> awkward_sizes(std::uint32_t work_group_size);
 
 namespace launch {
 
+void set_parameters(Arrays& arrays, const Build& build, const apsl_parameter_block& block, std::uint32_t first,
+                    std::uint32_t count);
 void predict_positions(Arrays& arrays, const Build& build);
 void assemble_gradients(Arrays& arrays, const Build& build);
 void measure_area_change(Arrays& arrays, const Build& build);
@@ -32,11 +34,13 @@ void begin_solve(Arrays& arrays, const Build& build, int sub_step);
 void end_call(Arrays& arrays, const Build& build);
 void assemble_pressure_csr(Arrays& arrays, const Build& build);
 void csr_spmv_dot(Arrays& arrays, const Build& build, int iteration);
-/// Both launches of the consistent matrix, the single one of the printed.
 void matrix_free_apply_dot(Arrays& arrays, const Build& build, int iteration);
 void cg_update(Arrays& arrays, const Build& build, int iteration);
+/// `iterations`: those done before.
+void finish_solve(Arrays& arrays, const Build& build, int iterations);
 void gather_displacements(Arrays& arrays, const Build& build, std::uint32_t slot);
 void update_velocities(Arrays& arrays, const Build& build);
+void filter_in_one_group(Arrays& arrays, const Build& build);
 
 }  // namespace launch
 }  // namespace apsl::test

@@ -19,8 +19,8 @@ void move_predicted(Arrays& arrays, std::uint32_t seed) {
     for (const Cloth& cloth : arrays.sources)
         for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v, ++i)
             for (std::size_t k = 0; k < 3; ++k)
-                predicted[i].s[k] = static_cast<float>(cloth.positions[3 * v + k] + moves[3 * i + k] +
-                                                       time_step * cloth.velocities[3 * v + k]);
+                predicted[arrays.vertex_places[i]].s[k] = static_cast<float>(
+                    cloth.positions[3 * v + k] + moves[3 * i + k] + time_step * cloth.velocities[3 * v + k]);
     arrays.predicted.write(predicted);
 }
 
@@ -41,7 +41,7 @@ void check_velocities(Arrays& arrays, const Build& build) {
                 const std::size_t n = at.offset + i * at.stride + k;
                 if (cloth.inverse_masses[v] == 0.0) continue;
                 expected_untouched[n] = after[n];
-                const double x = static_cast<double>(predicted[i].s[k]);
+                const double x = static_cast<double>(predicted[arrays.vertex_places[i]].s[k]);
                 const double end = cloth.positions[3 * v + k] + time_step * cloth.velocities[3 * v + k];
                 const double expected = cloth.velocities[3 * v + k] + (x - end) / time_step;
                 errors.push_back(static_cast<double>(after[n]) - expected);

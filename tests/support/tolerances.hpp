@@ -23,6 +23,15 @@ inline double sum_tolerance(double operations, std::size_t n) {
     return 2.0 * (operations + std::sqrt(static_cast<double>(n))) * epsilon;
 }
 
+/// Unit of the 16-bit fixed point in which gradients ḡ are stored (kernels/gradients.h), about 2⁻¹⁵: a component is off
+/// by half of it at most, a triangle's nine together by 1.5 of it, against Σ |ḡ_k|² ≤ 1.
+constexpr double gradient_unit = 1.0 / 32767.0;
+
+/// Bound on the relative error, norm-wise, of what is bilinear in stored gradients (matrix entries and products): 1.5
+/// units for each of the two factors, and a third more for entries that are small by cancellation. The scale is the sum
+/// of magnitudes, where a diagonal entry is 1.
+constexpr double stored_product_tolerance = 4.0 * gradient_unit;
+
 inline double norm(std::span<const double> numbers) {
     double squares = 0.0;
     for (const double number : numbers) squares += number * number;
