@@ -85,6 +85,7 @@ int run(const Arguments& arguments) {
     benchmark::Initialize(&count, words.data());
     if (benchmark::RunSpecifiedBenchmarks() == 0) throw std::runtime_error("no benchmark left to run");
     benchmark::Shutdown();
+    run.results.raise_copy_bandwidth(copy_bandwidth(run.device, arguments.copy_megabytes << 20));
     run.results.write(arguments.out);
     return run.failed ? 1 : 0;
 }

@@ -56,6 +56,9 @@ MedianAndSpread median_and_spread(std::vector<double> samples) {
     return {quantile(0.5), quantile(0.75) - quantile(0.25)};
 }
 
+Results::Results() : commit_(commit()) {
+}
+
 void Results::add(const Place& place, const Measurement& measurement) {
     if (measurement.median > 0.0)
         rows_.emplace_back(place, measurement);
@@ -64,11 +67,15 @@ void Results::add(const Place& place, const Measurement& measurement) {
                   << " triangles: " << measurement.quantity << " left out, it took no time that could be measured\n";
 }
 
+void Results::raise_copy_bandwidth(double bandwidth) {
+    for (auto& [place, measurement] : rows_)
+        if (place.copy_bandwidth) place.copy_bandwidth = std::max(*place.copy_bandwidth, bandwidth);
+}
+
 void Results::write(const std::string& path) const {
-    const std::string at = commit();
     nlohmann::json rows = nlohmann::json::array();
     for (const auto& [place, m] : rows_) {
-        nlohmann::json row{{"commit", at},
+        nlohmann::json row{{"commit", commit_},
                            {"device", place.device},
                            {"driver", place.driver},
                            {"build_type", APSL_BUILD_TYPE},

@@ -34,13 +34,19 @@ MedianAndSpread median_and_spread(std::vector<double> samples);
 /// The measurements of one run.
 class Results {
 public:
+    /// Looks up the commit the sources stand at.
+    Results();
+
     /// A measurement whose time is not above zero (a difference of two times that drowned in noise) is left out, and
     /// said so on stderr.
     void add(const Place& place, const Measurement& measurement);
+    /// Takes this copy bandwidth, B/s, for all rows that have a lower one: a busy moment must not flatter anybody.
+    void raise_copy_bandwidth(double bandwidth);
     /// Writes the file whole or not at all. Throws std::runtime_error.
     void write(const std::string& path) const;
 
 private:
+    std::string commit_;
     std::vector<std::pair<Place, Measurement>> rows_;
 };
 
