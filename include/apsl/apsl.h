@@ -54,12 +54,12 @@ typedef struct apsl_limiter_options {
 
 /* apsl::Parameters: what may change from call to call. Begin with apsl_limiter_default_parameters(). */
 typedef struct apsl_limiter_parameters {
-    float time_step;          /* s, > 0 */
-    float regularization;     /* alpha >= 1, multiplies diag(G) */
-    int32_t sub_steps;        /* >= 0 */
-    float target_area_change; /* |A - A0| / A0 >= 0 at which no further sub-step is done */
-    float tolerance;          /* in [0, 1), of a solve's residual */
-    int32_t max_iterations;   /* >= 1, of a solve */
+    float time_step;             /* s, > 0 */
+    float regularization;        /* alpha >= 1, multiplies diag(G) */
+    int32_t sub_steps;           /* >= 0 */
+    float target_area_change;    /* |A - A0| / A0 >= 0 at which no further sub-step is done */
+    float tolerance;             /* in [0, 1), of a solve's residual */
+    int32_t max_iterations;      /* >= 1, of a solve */
     int32_t adaptive_iterations; /* 0: alpha stays as given; else more iterations than this raise it */
 } apsl_limiter_parameters;
 
