@@ -117,6 +117,8 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     }
     if (assembled()) values = buffer(adjacency.columns.size() * sizeof(float));
 
+    ordered_rest_areas = zeroed_buffer(triangle_count);
+    ordered_regularization = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
     predicted = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
     gradients = buffer(triangle_count * gradient_bytes);
     residual = zeroed_buffer(triangle_count);
@@ -135,16 +137,19 @@ void StrainLimiter::Implementation::create_kernels() {
         filter_in_one_group = kernel("filter_in_one_group");
         set_arguments(filter_in_one_group, 0, cloths, parameters, states, stats, vertex_order, triangle_order,
                       triangles, patches, patch_vertices, local_triangles, corner_offsets, corners, predicted,
-                      gradients, residual, damped_diagonal, product, direction, direction_product, pressure);
+                      gradients, residual, damped_diagonal, product, direction, direction_product, pressure,
+                      ordered_rest_areas, ordered_regularization);
         return;
     }
     predict_positions = kernel("predict_positions");
     set_arguments(predict_positions, 0, cloths, parameters, states, stats, vertex_order, predicted);
+    order_triangle_values = kernel("order_triangle_values");
+    set_arguments(order_triangle_values, 0, cloths, triangle_order, ordered_rest_areas, ordered_regularization);
     assemble_gradients = kernel("assemble_gradients");
-    set_arguments(assemble_gradients, 0, cloths, parameters, states, partials, triangle_order, triangles, predicted,
-                  gradients, residual, damped_diagonal);
+    set_arguments(assemble_gradients, 0, cloths, parameters, states, partials, triangles, predicted, gradients,
+                  residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
     measure_area_change = kernel("measure_area_change");
-    set_arguments(measure_area_change, 0, cloths, partials, triangle_order, triangles, predicted);
+    set_arguments(measure_area_change, 0, cloths, partials, triangles, predicted, ordered_rest_areas);
     begin_solve = kernel("begin_solve");
     set_arguments(begin_solve, 0, parameters, states, stats, partials, groups);
     end_call = kernel("end_call");
@@ -202,19 +207,18 @@ void StrainLimiter::Implementation::bind(const Buffers& buffers) const {
     // A kernel needs some buffer there even where it reads none.
     const BufferView& regularization = buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
     if (one_group()) {
-        set(filter_in_one_group, 20, buffers.positions);
-        set(filter_in_one_group, 22, buffers.velocities);
-        set(filter_in_one_group, 24, buffers.inverse_masses);
-        set(filter_in_one_group, 26, buffers.rest_areas);
-        set(filter_in_one_group, 28, regularization);
+        set(filter_in_one_group, 22, buffers.positions);
+        set(filter_in_one_group, 24, buffers.velocities);
+        set(filter_in_one_group, 26, buffers.inverse_masses);
+        set(filter_in_one_group, 28, buffers.rest_areas);
+        set(filter_in_one_group, 30, regularization);
         return;
     }
     set(predict_positions, 6, buffers.positions);
     set(predict_positions, 8, buffers.velocities);
     set(predict_positions, 10, buffers.inverse_masses);
-    set(assemble_gradients, 10, buffers.rest_areas);
-    set(assemble_gradients, 12, regularization);
-    set(measure_area_change, 5, buffers.rest_areas);
+    set(order_triangle_values, 4, buffers.rest_areas);
+    set(order_triangle_values, 6, regularization);
     set(update_velocities, 5, buffers.positions);
     set(update_velocities, 7, buffers.velocities);
 }
@@ -259,6 +263,7 @@ void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int m
 void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, int sub_steps,
                                                       int max_iterations) const {
     launch(commands, predict_positions);
+    launch(commands, order_triangle_values);
     for (cl_int sub_step = 0; sub_step < sub_steps; ++sub_step) {
         set_argument(begin_solve, 5, sub_step);
         queue_solve(commands, max_iterations);

@@ -33,12 +33,14 @@ struct StrainLimiter::Implementation {
     bool profiling = false;
 
     host::BufferHandle cloths, parameters, states, stats, partials;
-    host::BufferHandle vertex_order, triangle_order, triangles, corner_offsets, corners;
+    host::BufferHandle vertex_order, triangle_order, ordered_rest_areas, ordered_regularization, triangles,
+        corner_offsets, corners;
     host::BufferHandle patches, patch_vertices, local_triangles, row_offsets, columns, shared, values;
     host::BufferHandle predicted, gradients, residual, damped_diagonal, product, direction, direction_product, pressure;
 
     host::ProgramHandle program;
-    host::Kernel set_parameters, predict_positions, assemble_gradients, measure_area_change, begin_solve, end_call;
+    host::Kernel set_parameters, predict_positions, order_triangle_values, assemble_gradients, measure_area_change,
+        begin_solve, end_call;
     host::Kernel assemble_pressure_csr, apply_dot, cg_update, finish_solve, gather_displacements, update_velocities;
     host::Kernel filter_in_one_group;
 

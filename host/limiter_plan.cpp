@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace apsl::host {
 namespace {
@@ -56,12 +57,13 @@ void append_patches(Adjacency& out, const Patches& patches, const apsl_cloth& cl
                 seen[vertex - cloth.vertex_begin] = patch;
                 out.patch_vertices.push_back(vertex);
             }
-        // Vertices of like valence together: the gather's inner loop then ends where the processor expects it to.
+        // Ordered as the vertices are: a patch's own ones in sequence, with like valence together.
         const auto valence = [&](std::uint32_t vertex) {
             return out.corner_offsets[vertex + 1] - out.corner_offsets[vertex];
         };
-        std::stable_sort(out.patch_vertices.begin() + first_vertex, out.patch_vertices.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return valence(a) < valence(b); });
+        std::sort(
+            out.patch_vertices.begin() + first_vertex, out.patch_vertices.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::pair(valence(a), a) < std::pair(valence(b), b); });
         for (std::uint32_t n = first_vertex; n < out.patch_vertices.size(); ++n)
             local[out.patch_vertices[n] - cloth.vertex_begin] = n - first_vertex;
         for (std::uint32_t t = patches.patch_offsets[patch]; t < patches.patch_offsets[patch + 1]; ++t)

@@ -20,17 +20,10 @@ APSL_INLINE apsl_area_sums no_areas(void) {
     return sums;
 }
 
-// A cloth's triangles are taken in blocks of APSL_LANES; the last one may reach into the padding.
+// A cloth's triangles are taken in blocks of APSL_LANES; the last one may reach into the padding,
+// where there are no rest areas.
 APSL_INLINE uint blocks_of(apsl_cloth cloth) {
     return (cloth.triangle_count + APSL_LANES - 1u) / APSL_LANES;
-}
-
-// Rest areas of a block, 0 in the padding: a triangle without a rest area is left alone.
-APSL_INLINE lanes load_rest_areas(apsl_cloth cloth, __global const uint* triangle_order,
-                                  __global const float* rest_areas, uint block) {
-    const lanes rest_area = load_lanes_in_order(rest_areas, triangle_order, cloth.triangle_begin + block * APSL_LANES);
-    const lanes_int triangle = (lanes_int)(block * APSL_LANES) + APSL_EACH_LANE;
-    return select((lanes)(0.0f), rest_area, triangle < (lanes_int)(cloth.triangle_count));
 }
 
 APSL_INLINE void add_areas(apsl_area_sums* sums, apsl_triangle_geometry triangle, lanes rest_area) {

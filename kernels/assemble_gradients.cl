@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Areas, right-hand side of Eq. (5) and scaled corner gradients: everything a solve needs of the geometry, and the sums
 // that decide whether there is a solve at all. Reference: apsl::reference, geometry, and the diagonal of Eq. (3).
-// Moves 12 B indices, 4 B order, about 8 B positions, 4 B rest area read; 32 B gradients, 4 B residual, 4 B α D
+// Moves 12 B indices, about 8 B positions, 4 B rest area read; 32 B gradients, 4 B residual, 4 B α D
 // written, a triangle.
 #include "layout.h"
 #include "triangle_assembly.h"
@@ -9,17 +9,15 @@
 
 APSL_KERNEL void assemble_gradients(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
                                     __global const apsl_solve_state* states, __global float* partials,
-                                    __global const uint* triangle_order, __global const uint* triangles,
-                                    __global const float4* predicted, __global apsl_gradients* gradients,
-                                    __global float* residual, __global float* damped_diagonal,
-                                    __global const float* rest_areas, ulong rest_area_offset,
-                                    __global const float* regularization, ulong regularization_offset) {
+                                    __global const uint* triangles, __global const float4* predicted,
+                                    __global apsl_gradients* gradients, __global float* residual,
+                                    __global float* damped_diagonal, __global const float* rest_areas,
+                                    __global const float* regularization) {
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const apsl_assembly_sums sums =
         assemble_triangles(cloths[c], !states[c].stopped, parameters[c].regularization, states[c].adaptive_factor,
-                           triangle_order, triangles, predicted, gradients, residual, damped_diagonal,
-                           rest_areas + rest_area_offset, regularization + regularization_offset);
+                           triangles, predicted, gradients, residual, damped_diagonal, rest_areas, regularization);
     store_area_partials(sums.areas, partials, scratch);
     store_partial(partials, APSL_PARTIAL_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.squares), scratch));
     store_partial(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.scaled_squares), scratch));

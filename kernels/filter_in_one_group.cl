@@ -12,31 +12,32 @@
 #include "work_group.h"
 
 APSL_KERNEL void filter_in_one_group(
-    __global const apsl_cloth* cloths, __global const apsl_parameters* all_parameters,
-    __global apsl_solve_state* states, __global apsl_stats* all_stats, __global const uint* vertex_order,
-    __global const uint* triangle_order, __global const uint* triangles, __global const uint2* patches,
-    __global const uint* patch_vertices, __global const ushort* local_triangles, __global const uint* corner_offsets,
-    __global const uint* corners, __global float4* predicted, __global apsl_gradients* gradients,
-    __global float* residual, __global float* damped_diagonal, __global float* product, __global float* direction,
-    __global float* direction_product, __global float* pressure, __global const float* positions, ulong position_offset,
+    __global const apsl_cloth* cloths, __global const apsl_parameters* parameters, __global apsl_solve_state* states,
+    __global apsl_stats* all_stats, __global const uint* vertex_order, __global const uint* triangle_order,
+    __global const uint* triangles, __global const uint2* patches, __global const uint* patch_vertices,
+    __global const ushort* local_triangles, __global const uint* corner_offsets, __global const uint* corners,
+    __global float4* predicted, __global apsl_gradients* gradients, __global float* residual,
+    __global float* damped_diagonal, __global float* product, __global float* direction,
+    __global float* direction_product, __global float* pressure, __global float* ordered_rest_areas,
+    __global float* ordered_regularization, __global const float* positions, ulong position_offset,
     __global float* velocities, ulong velocity_offset, __global const float* inverse_masses, ulong inverse_mass_offset,
     __global const float* rest_areas, ulong rest_area_offset, __global const float* regularization,
     ulong regularization_offset) {
     APSL_SCRATCH;
     __local float4 forces[APSL_PATCH_VERTICES];
     const uint c = (uint)get_group_id(1);
-    const apsl_cloth cloth = cloths[c];
-    const apsl_parameters parameters = all_parameters[c];
     apsl_stats stats = {0, 0, 0.0f, 0.0f, 0.0f, APSL_STATUS_OK};
     float factor = states[c].adaptive_factor;
 
-    predict_vertices(cloth, parameters.time_step, vertex_order, predicted, positions + position_offset,
+    predict_vertices(cloths[c], parameters[c].time_step, vertex_order, predicted, positions + position_offset,
                      velocities + velocity_offset, inverse_masses + inverse_mass_offset);
+    order_values(cloths[c], triangle_order, ordered_rest_areas, ordered_regularization, rest_areas + rest_area_offset,
+                 regularization + regularization_offset);
     for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
-        const apsl_assembly_sums sums = assemble_triangles(
-            cloth, true, parameters.regularization, factor, triangle_order, triangles, predicted, gradients, residual,
-            damped_diagonal, rest_areas + rest_area_offset, regularization + regularization_offset);
+        const apsl_assembly_sums sums =
+            assemble_triangles(cloths[c], true, parameters[c].regularization, factor, triangles, predicted, gradients,
+                               residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
         const float squared_change = group_sum(sum_of_lanes(sums.areas.squared_change), scratch);
         const float measured = group_sum(sum_of_lanes(sums.areas.measured), scratch);
         const float not_finite = group_sum(sum_of_lanes(sums.areas.not_finite), scratch);
@@ -46,16 +47,16 @@ APSL_KERNEL void filter_in_one_group(
         stats.rms_area_change = measured > 0.0f ? sqrt(squared_change / measured) : 0.0f;
         if (not_finite > 0.0f || !isfinite(solve.initial_residual)) stats.status = APSL_STATUS_DIVERGED;
 
-        going_on = stats.status != APSL_STATUS_DIVERGED && stats.sub_steps < parameters.sub_steps &&
-                   stats.max_area_change > parameters.target_area_change;
+        going_on = stats.status != APSL_STATUS_DIVERGED && stats.sub_steps < parameters[c].sub_steps &&
+                   stats.max_area_change > parameters[c].target_area_change;
         if (going_on) {
             group_memory_barrier();
-            iterate_in_group(&solve, parameters, cloth, patches, patch_vertices, local_triangles, corner_offsets,
-                             corners, gradients, residual, damped_diagonal, product, direction, direction_product,
-                             pressure, forces, scratch);
-            displace_vertices(cloth, solve.iterations > 0, corner_offsets, corners, gradients, pressure, predicted);
-            const bool converged = solve.residual <= parameters.tolerance_squared * solve.initial_residual;
-            factor = adapted_factor(factor, parameters, solve.iterations, converged);
+            iterate_in_group(&solve, parameters + c, cloths + c, patches, patch_vertices, local_triangles,
+                             corner_offsets, corners, gradients, residual, damped_diagonal, product, direction,
+                             direction_product, pressure, forces, scratch);
+            displace_vertices(cloths[c], solve.iterations > 0, corner_offsets, corners, gradients, pressure, predicted);
+            const bool converged = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
+            factor = adapted_factor(factor, parameters[c], solve.iterations, converged);
             stats.sub_steps += 1;
             stats.cg_iterations += solve.iterations;
             if (solve.initial_residual > 0.0f)
@@ -63,8 +64,8 @@ APSL_KERNEL void filter_in_one_group(
             if (!converged) stats.status = APSL_STATUS_NOT_CONVERGED;
         }
     }
-    correct_velocities(cloth, stats.status != APSL_STATUS_DIVERGED && stats.sub_steps > 0, parameters, vertex_order,
-                       predicted, positions + position_offset, velocities + velocity_offset);
+    correct_velocities(cloths[c], stats.status != APSL_STATUS_DIVERGED && stats.sub_steps > 0, parameters[c],
+                       vertex_order, predicted, positions + position_offset, velocities + velocity_offset);
     if (get_local_id(0) == 0) {
         states[c].adaptive_factor = factor;
         all_stats[c] = stats;

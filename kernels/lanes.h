@@ -11,12 +11,10 @@
 #define APSL_LANES 8
 typedef float8 lanes;
 typedef int8 lanes_int;
-#define APSL_EACH_LANE (int8)(0, 1, 2, 3, 4, 5, 6, 7)
 #else
 #define APSL_LANES 1
 typedef float lanes;
 typedef int lanes_int;
-#define APSL_EACH_LANE 0
 #endif
 
 typedef struct {
@@ -45,13 +43,6 @@ APSL_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global
 
 APSL_INLINE lanes load_lanes(__global const float* values, uint first) {
     return vload8(0, values + first);
-}
-
-// values[order[first]], …
-APSL_INLINE lanes load_lanes_in_order(__global const float* values, __global const uint* order, uint first) {
-    __global const uint* i = order + first;
-    return (float8)(values[i[0]], values[i[1]], values[i[2]], values[i[3]], values[i[4]], values[i[5]], values[i[6]],
-                    values[i[7]]);
 }
 
 APSL_INLINE void store_lanes(lanes value, __global float* values, uint first) {
@@ -114,10 +105,6 @@ APSL_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global
 
 APSL_INLINE lanes load_lanes(__global const float* values, uint first) {
     return values[first];
-}
-
-APSL_INLINE lanes load_lanes_in_order(__global const float* values, __global const uint* order, uint first) {
-    return values[order[first]];
 }
 
 APSL_INLINE void store_lanes(lanes value, __global float* values, uint first) {

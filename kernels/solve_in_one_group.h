@@ -24,26 +24,28 @@ APSL_INLINE apsl_solve begin_solve_in_group(float squares, float scaled_squares)
     return solve;
 }
 
-// Iterates until the tolerance is met or the iterations are used up.
-APSL_INLINE void iterate_in_group(apsl_solve* solve, apsl_parameters parameters, apsl_cloth cloth,
-                                  __global const uint2* patches, __global const uint* patch_vertices,
-                                  __global const ushort* local_triangles, __global const uint* corner_offsets,
-                                  __global const uint* corners, __global const apsl_gradients* gradients,
-                                  __global float* residual, __global const float* damped_diagonal,
-                                  __global float* product, __global float* direction, __global float* direction_product,
+// Iterates until the tolerance is met or the iterations are used up. Parameters and cloth are read where they are
+// needed: held all the way they would cost 16 scalar registers.
+APSL_INLINE void iterate_in_group(apsl_solve* solve, __global const apsl_parameters* parameters,
+                                  __global const apsl_cloth* cloth, __global const uint2* patches,
+                                  __global const uint* patch_vertices, __global const ushort* local_triangles,
+                                  __global const uint* corner_offsets, __global const uint* corners,
+                                  __global const apsl_gradients* gradients, __global float* residual,
+                                  __global const float* damped_diagonal, __global float* product,
+                                  __global float* direction, __global float* direction_product,
                                   __global float* pressure, __local float4* forces, __local float* scratch) {
     bool going_on = true;  // uniform
-    while (going_on && solve->iterations < parameters.max_iterations &&
-           solve->residual > parameters.tolerance_squared * solve->initial_residual) {
+    while (going_on && solve->iterations < parameters->max_iterations &&
+           solve->residual > parameters->tolerance_squared * solve->initial_residual) {
         const float curvature =
-            group_sum(multiply_patches(cloth, true, patches, patch_vertices, local_triangles, corner_offsets, corners,
+            group_sum(multiply_patches(*cloth, true, patches, patch_vertices, local_triangles, corner_offsets, corners,
                                        gradients, residual, product, forces),
                       scratch);
         group_memory_barrier();
         const float2 coefficients = cg_coefficients(solve->scaled_residual, curvature, solve->previous_scaled_residual,
                                                     solve->previous_step, solve->iterations);
         going_on = coefficients.x > 0.0f;
-        const float2 sums = advance_cg(cloth, going_on, coefficients.x, coefficients.y, solve->iterations == 0,
+        const float2 sums = advance_cg(*cloth, going_on, coefficients.x, coefficients.y, solve->iterations == 0,
                                        (__global float4*)residual, (__global const float4*)damped_diagonal,
                                        (__global const float4*)product, (__global float4*)direction,
                                        (__global float4*)direction_product, (__global float4*)pressure);

@@ -26,18 +26,34 @@ APSL_INLINE void pack_gradient(apsl_triangle_geometry t, uint corner, lanes scal
     words[1] = z & 0xffff;
 }
 
+// The caller's values in the limiter's order. The padding keeps what it was made with: no rest area.
+APSL_INLINE void order_values(apsl_cloth cloth, __global const uint* triangle_order, __global float* ordered_rest_areas,
+                              __global float* ordered_regularization, __global const float* rest_areas,
+                              __global const float* regularization) {
+    const apsl_range range = share_of(cloth.triangle_count, true);
+    for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + t;
+        ordered_rest_areas[a] = rest_areas[triangle_order[a]];
+#if APSL_REGULARIZATION_PER_TRIANGLE
+        ordered_regularization[a] = fmax(regularization[triangle_order[a]], 1.0f);
+#else
+        (void)ordered_regularization;
+        (void)regularization;
+#endif
+    }
+}
+
 typedef struct {
     apsl_area_sums areas;
     lanes squares, scaled_squares;  // of the right-hand side, plain and scaled
 } apsl_assembly_sums;
 
 // gradients[a], residual[a] = s (A − A⁰), damped_diagonal[a] = α D. `alpha` holds for all triangles, unless
-// `regularization` has one for each (in the caller's order, like rest_areas).
+// `regularization` has one for each. Both come from order_values.
 APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active, float alpha, float adaptive_factor,
-                                                  __global const uint* triangle_order, __global const uint* triangles,
-                                                  __global const float4* predicted, __global apsl_gradients* gradients,
-                                                  __global float* residual, __global float* damped_diagonal,
-                                                  __global const float* rest_areas,
+                                                  __global const uint* triangles, __global const float4* predicted,
+                                                  __global apsl_gradients* gradients, __global float* residual,
+                                                  __global float* damped_diagonal, __global const float* rest_areas,
                                                   __global const float* regularization) {
     const apsl_range range = share_of(blocks_of(cloth), active);
     apsl_assembly_sums sums;
@@ -47,10 +63,10 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
     for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + block * APSL_LANES;
         const apsl_triangle_geometry triangle = load_triangles(triangles, predicted, a);
-        const lanes rest_area = load_rest_areas(cloth, triangle_order, rest_areas, block);
+        const lanes rest_area = load_lanes(rest_areas, a);
 #if APSL_REGULARIZATION_PER_TRIANGLE
         (void)alpha;
-        const lanes given = fmax(load_lanes_in_order(regularization, triangle_order, a), (lanes)(1.0f));
+        const lanes given = load_lanes(regularization, a);
 #else
         (void)regularization;
         const lanes given = alpha;
@@ -78,15 +94,13 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
 }
 
 // The areas alone.
-APSL_INLINE apsl_area_sums measure_triangles(apsl_cloth cloth, __global const uint* triangle_order,
-                                             __global const uint* triangles, __global const float4* predicted,
-                                             __global const float* rest_areas) {
+APSL_INLINE apsl_area_sums measure_triangles(apsl_cloth cloth, __global const uint* triangles,
+                                             __global const float4* predicted, __global const float* rest_areas) {
     const apsl_range range = share_of(blocks_of(cloth), true);
     apsl_area_sums sums = no_areas();
     for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
-        const apsl_triangle_geometry triangle =
-            load_triangles(triangles, predicted, cloth.triangle_begin + block * APSL_LANES);
-        add_areas(&sums, triangle, load_rest_areas(cloth, triangle_order, rest_areas, block));
+        const uint a = cloth.triangle_begin + block * APSL_LANES;
+        add_areas(&sums, load_triangles(triangles, predicted, a), load_lanes(rest_areas, a));
     }
     return sums;
 }

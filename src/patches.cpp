@@ -82,12 +82,22 @@ Patches build_patches(const Topology& topology, std::uint32_t max_triangles) {
 
     std::vector<bool> used(topology.vertex_count(), false);
     patches.vertex_order.reserve(topology.vertex_count());
+    const auto valence = [&](std::uint32_t vertex) {
+        return topology.corner_offsets()[vertex + 1] - topology.corner_offsets()[vertex];
+    };
     const auto use = [&](std::uint32_t vertex) {
         if (!used[vertex]) patches.vertex_order.push_back(vertex);
         used[vertex] = true;
     };
-    for (const std::uint32_t triangle : patches.triangle_order)
-        for (const std::uint32_t vertex : topology.triangles()[triangle]) use(vertex);
+    for (std::size_t p = 0; p + 1 < patches.patch_offsets.size(); ++p) {
+        const auto first = static_cast<std::ptrdiff_t>(patches.vertex_order.size());
+        for (std::uint32_t place = patches.patch_offsets[p]; place < patches.patch_offsets[p + 1]; ++place)
+            for (const std::uint32_t vertex : topology.triangles()[patches.triangle_order[place]]) use(vertex);
+        // Vertices of like valence together: a loop over a vertex's corners then ends where the processor expects it
+        // to.
+        std::stable_sort(patches.vertex_order.begin() + first, patches.vertex_order.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return valence(a) < valence(b); });
+    }
     for (std::uint32_t vertex = 0; vertex < topology.vertex_count(); ++vertex) use(vertex);
     return patches;
 }

@@ -14,7 +14,7 @@ struct Patches {
     std::vector<std::uint32_t> triangle_order;  ///< [T], place → triangle of the topology
     std::vector<std::uint32_t> patch_offsets;   ///< [patches + 1], places where patches begin
     std::vector<std::uint32_t>
-        vertex_order;  ///< [V], place → vertex of the topology, in the patches' order of first use
+        vertex_order;  ///< [V], place → vertex of the topology, by patch of first use, in it by valence
 };
 
 /// Grows patches breadth-first over shared vertices, each from the rim of those before, to at most `max_triangles`.

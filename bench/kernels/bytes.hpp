@@ -29,8 +29,10 @@ struct Traffic {
 constexpr std::array traffic_table{
     // vertex_order, position, velocity, inverse mass read; predicted written
     Traffic{"predict_positions", 48, 0, 0},
-    // predicted; indices 12, triangle_order, rest area read; record, residual, damped_diagonal written
-    Traffic{"assemble_gradients", 16, 60, 0},
+    // triangle_order, rest area read, ordered rest area written
+    Traffic{"order_triangle_values", 0, 12, 0},
+    // predicted; indices 12, ordered rest area read; record, residual, damped_diagonal written
+    Traffic{"assemble_gradients", 16, 56, 0},
     // row offset, record read; column 4 and shared code 1 read, value written
     Traffic{"assemble_pressure_csr", 0, 36, 9},
     // row offset, residual read, product written; value and column read
@@ -43,8 +45,8 @@ constexpr std::array traffic_table{
     Traffic{"cg_update", 0, 40, 0, 12},
     // corner offset, predicted read and written; corners 12, gradients 24, pressure read
     Traffic{"gather_displacements", 36, 40, 0},
-    // predicted; indices 12, triangle_order, rest area read
-    Traffic{"measure_area_change", 16, 20, 0},
+    // predicted; indices 12, ordered rest area read
+    Traffic{"measure_area_change", 16, 16, 0},
     // vertex_order, predicted, position, velocity read, velocity written
     Traffic{"update_velocities", 56, 0, 0},
 };

@@ -169,6 +169,9 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       direction(poison<float>(adjacency.triangle_count)),
       direction_product(poison<float>(adjacency.triangle_count)),
       pressure(poison<float>(adjacency.triangle_count)),
+      ordered_rest_areas(over_triangles([&](std::size_t c, std::size_t a) { return sources[c].rest_areas[a]; })),
+      ordered_regularization(
+          over_triangles([&](std::size_t c, std::size_t a) { return sources[c].regularization[a]; })),
       caller_positions(placed(sources, &Cloth::positions, 3, position)),
       caller_velocities(placed(sources, &Cloth::velocities, 3, velocity)),
       inverse_masses(placed(sources, &Cloth::inverse_masses, 1, {1, array_offset})),

@@ -59,6 +59,7 @@ struct Arrays {
     DeviceArray<float> values;   ///< the scaled matrix
     DeviceArray<float> product;  ///< poisoned, 0 in the padding; the rest is poisoned there too
     DeviceArray<float> direction, direction_product, pressure;
+    DeviceArray<float> ordered_rest_areas, ordered_regularization;  ///< what order_triangle_values makes
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
 
     std::size_t cloth_count() const { return sources.size(); }

@@ -78,18 +78,24 @@ void predict_positions(Arrays& a, const Build& build) {
     run(k, a.groups, build, a.cloth_count());
 }
 
+void order_triangle_values(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "order_triangle_values.cl", "order_triangle_values");
+    set_arguments(k, 0, a.cloths, a.triangle_order, a.ordered_rest_areas, a.ordered_regularization, a.rest_areas,
+                  cl_ulong{a.array_offset}, build.alpha_per_triangle ? a.regularization : a.rest_areas,
+                  cl_ulong{a.array_offset});
+    run(k, a.groups, build, a.cloth_count());
+}
+
 void assemble_gradients(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "assemble_gradients");
-    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangle_order, a.triangles, a.predicted,
-                  a.gradients, a.residual, a.damped_diagonal, a.rest_areas, cl_ulong{a.array_offset},
-                  build.alpha_per_triangle ? a.regularization : a.rest_areas, cl_ulong{a.array_offset});
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients, a.residual,
+                  a.damped_diagonal, a.ordered_rest_areas, a.ordered_regularization);
     run(k, a.groups, build, a.cloth_count());
 }
 
 void measure_area_change(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "measure_area_change.cl", "measure_area_change");
-    set_arguments(k, 0, a.cloths, a.partials, a.triangle_order, a.triangles, a.predicted, a.rest_areas,
-                  cl_ulong{a.array_offset});
+    set_arguments(k, 0, a.cloths, a.partials, a.triangles, a.predicted, a.ordered_rest_areas);
     run(k, a.groups, build, a.cloth_count());
 }
 
@@ -167,10 +173,10 @@ void filter_in_one_group(Arrays& a, const Build& build) {
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.triangle_order, a.triangles,
                   a.patches, a.patch_vertices, a.local_triangles, a.corner_offsets, a.corners, a.predicted, a.gradients,
                   a.residual, a.damped_diagonal, a.product, a.direction, a.direction_product, a.pressure,
-                  a.caller_positions, cl_ulong{a.position_placement.offset}, a.caller_velocities,
-                  cl_ulong{a.velocity_placement.offset}, a.inverse_masses, cl_ulong{a.array_offset}, a.rest_areas,
-                  cl_ulong{a.array_offset}, build.alpha_per_triangle ? a.regularization : a.rest_areas,
-                  cl_ulong{a.array_offset});
+                  a.ordered_rest_areas, a.ordered_regularization, a.caller_positions,
+                  cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset},
+                  a.inverse_masses, cl_ulong{a.array_offset}, a.rest_areas, cl_ulong{a.array_offset},
+                  build.alpha_per_triangle ? a.regularization : a.rest_areas, cl_ulong{a.array_offset});
     run(k, 1, build, a.cloth_count());
 }
 
