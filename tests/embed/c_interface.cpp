@@ -145,4 +145,5 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(p.target_area_change == parameters.target_area_change);
     CHECK(p.tolerance == parameters.tolerance);
     CHECK(p.max_iterations == parameters.max_iterations);
+    CHECK(p.adaptive_iterations == parameters.adaptive_iterations);
 }

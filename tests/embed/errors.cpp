@@ -52,6 +52,11 @@ TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]"
     check_invalid("work_group_size is 48, expected a power of two", options({.work_group_size = 48}));
     check_invalid("matrix", options({.matrix = static_cast<Matrix>(7)}));
     check_invalid("apply", options({.apply = static_cast<Apply>(-1)}));
+    check_invalid("execution", options({.execution = static_cast<Execution>(3)}));
+    check_invalid("execution is one_group, which needs the consistent matrix, matrix-free",
+                  options({.matrix = Matrix::printed, .execution = Execution::one_group}));
+    check_invalid("execution is one_group, which needs the consistent matrix, matrix-free",
+                  options({.apply = Apply::assembled_csr, .execution = Execution::one_group}));
     check_error(ErrorCode::unsupported, "work_group_size is 1073741824", options({.work_group_size = 1u << 30}));
 
     const std::vector<std::shared_ptr<const Topology>> none;
@@ -75,6 +80,7 @@ TEST_CASE("enqueue refuses parameters out of range, and queues nothing", "[embed
     check_invalid("time_step is 0", parameters({.time_step = 0.0f}));
     check_invalid("time_step is nan", parameters({.time_step = nan}));
     check_invalid("time_step is inf", parameters({.time_step = infinity}));
+    check_invalid("adaptive_iterations is -1", parameters({.adaptive_iterations = -1}));
     check_invalid("sub_steps is -1", parameters({.sub_steps = -1}));
     check_invalid("target_area_change is -0.1", parameters({.target_area_change = -0.1f}));
     check_invalid("target_area_change is nan", parameters({.target_area_change = nan}));

@@ -15,10 +15,12 @@ struct Filtered {
     std::vector<Stats> stats;
 };
 
-const Options variants[] = {{.matrix = Matrix::consistent, .apply = Apply::assembled_csr},
-                            {.matrix = Matrix::consistent, .apply = Apply::matrix_free},
-                            {.matrix = Matrix::printed, .apply = Apply::assembled_csr},
-                            {.matrix = Matrix::printed, .apply = Apply::matrix_free}};
+const Options variants[] = {
+    {.matrix = Matrix::consistent, .apply = Apply::assembled_csr, .execution = Execution::many_groups},
+    {.matrix = Matrix::consistent, .apply = Apply::matrix_free, .execution = Execution::many_groups},
+    {.matrix = Matrix::printed, .apply = Apply::assembled_csr, .execution = Execution::many_groups},
+    {.matrix = Matrix::printed, .apply = Apply::matrix_free, .execution = Execution::many_groups},
+    {.matrix = Matrix::consistent, .apply = Apply::matrix_free, .execution = Execution::one_group}};
 
 Filtered in_order_result(StrainLimiter& limiter, const MovingCloth& cloth, const Parameters& parameters) {
     const CallerBuffers buffers({&cloth, 1}, limiter.options());
@@ -69,7 +71,7 @@ void check_behind_gate(cl_command_queue queue, const Options& options) {
 
 TEST_CASE("in-order queue: nothing happens before the wait list fires, then the same bytes", "[embed]") {
     for (const Options& options : variants) {
-        CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply));
+        CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply), static_cast<int>(options.execution));
         check_behind_gate(in_order_queue().get(), options);
     }
 }
@@ -82,7 +84,7 @@ TEST_CASE("out-of-order queue: nothing happens before the wait list fires, then 
         return;
     }
     for (const Options& options : variants) {
-        CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply));
+        CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply), static_cast<int>(options.execution));
         check_behind_gate(queue.get(), options);
     }
 }
