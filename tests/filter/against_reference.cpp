@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "filter/filtered.hpp"
+#include "support/tolerances.hpp"
 
 #include <apsl/reference.hpp>
 
@@ -31,18 +32,32 @@ std::vector<std::pair<std::string, Mesh>> meshes() {
             {"isolated vertices", with_isolated_vertices}};
 }
 
-std::string variant_name(const Options& options) {
-    return std::string(options.matrix == Matrix::consistent ? "consistent" : "printed") +
-           (options.apply == Apply::assembled_csr ? ", assembled" : ", matrix-free");
-}
-
 }  // namespace
 
 TEST_CASE("the filter agrees with the reference: every variant on every kind of mesh", "[filter]") {
-    for (const Options& options : variants)
-        for (const auto& [name, mesh] : meshes()) {
-            CAPTURE(variant_name(options), name);
-            check_against_reference(moving_cloth(mesh, 1), options, tight);
+    // All meshes as the cloths of one limiter: kernels are compiled once a variant.
+    std::vector<std::string> names;
+    std::vector<MovingCloth> cloths;
+    std::vector<std::shared_ptr<const Topology>> topologies;
+    for (const auto& [name, mesh] : meshes()) {
+        names.push_back(name);
+        cloths.push_back(moving_cloth(mesh, 1));
+        topologies.push_back(cloths.back().topology);
+    }
+    for (Options options : variants)
+        for (const std::uint32_t work_group_size : {1u, 64u}) {
+            options.work_group_size = work_group_size;
+            StrainLimiter limiter(device().context, device().id, topologies, options);
+            const CallerBuffers buffers(cloths, options);
+            const std::vector<Stats> stats = filter(limiter, buffers, {&tight, 1});
+            const std::vector<float> velocities = buffers.read_velocities();
+            auto begin = velocities.begin();
+            for (std::size_t c = 0; c < cloths.size(); ++c) {
+                CAPTURE(variant_name(options), names[c]);
+                const auto end = begin + static_cast<std::ptrdiff_t>(cloths[c].velocities.size());
+                check_against_reference({{begin, end}, stats[c]}, cloths[c], options, tight);
+                begin = end;
+            }
         }
 }
 
@@ -61,20 +76,23 @@ TEST_CASE("the filter agrees with the reference: strides, offsets, alpha per tri
 
 TEST_CASE("the filter agrees with the reference: work-group sizes", "[filter]") {
     const MovingCloth cloth = moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 2);
-    for (const std::uint32_t work_group_size : {1u, 2u, 32u, 256u}) {
-        CAPTURE(work_group_size);
-        check_against_reference(cloth, {.work_group_size = work_group_size}, tight);
-    }
+    for (Options options : {many_groups, one_group})
+        for (const std::uint32_t work_group_size : {2u, 32u}) {
+            options.work_group_size = work_group_size;
+            CAPTURE(variant_name(options));
+            check_against_reference(cloth, options, tight);
+        }
 }
 
 TEST_CASE("the filter agrees with the reference at the default parameters", "[filter]") {
     // A tolerance of 0.1 leaves room for different iteration counts, and ten sub-steps iterate what differs: the
     // comparison is of what both do to the areas.
     const MovingCloth cloth = moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 3);
-    for (const Apply apply : {Apply::assembled_csr, Apply::matrix_free}) {
+    for (const Options& options : {variants[0], many_groups, one_group}) {
+        CAPTURE(variant_name(options));
         const Parameters parameters;
-        const Filtered got = filter_on_device(cloth, {.apply = apply}, parameters);
-        const Filtered want = filter_with_reference(cloth, {.apply = apply}, parameters);
+        const Filtered got = filter_on_device(cloth, options, parameters);
+        const Filtered want = filter_with_reference(cloth, options, parameters);
         CHECK(got.stats.status == Status::ok);
         CHECK(got.stats.sub_steps == 10);
         CHECK(std::abs(got.stats.cg_iterations - want.stats.cg_iterations) <= 10);
@@ -99,11 +117,90 @@ TEST_CASE("the filter agrees with the reference on garments", "[filter]") {
         }
         for (double& coordinate : mesh.positions) coordinate /= high - low;  // 1 m tall
         const MovingCloth cloth = moving_cloth(mesh, 1);
-        for (const Options& options : {variants[0], variants[1], variants[3]}) {
+        for (const Options& options : {variants[0], many_groups, variants[3], one_group}) {
             CAPTURE(variant_name(options));
             Parameters parameters = tight;
             parameters.sub_steps = 1;
             check_against_reference(cloth, options, parameters);
+        }
+    }
+}
+
+TEST_CASE("iterations past the queued ones: as many as the reference's", "[filter]") {
+    // α near 1 and a tight tolerance: most of the iterations are finish_solve's.
+    const MovingCloth cloth = moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 5);
+    const Parameters slow{.regularization = 1.01f, .sub_steps = 1, .tolerance = 1e-2f, .max_iterations = 50};
+    const Filtered want = filter_with_reference(cloth, many_groups, slow);
+    REQUIRE(want.stats.cg_iterations > 16);
+    REQUIRE(want.stats.cg_iterations < 50);
+    for (Options options : {many_groups, one_group})
+        for (const std::uint32_t work_group_size : {1u, 64u}) {
+            options.work_group_size = work_group_size;
+            CAPTURE(variant_name(options));
+            const Filtered got = filter_on_device(cloth, options, slow);
+            CHECK(std::abs(got.stats.cg_iterations - want.stats.cg_iterations) <= 1);
+            CHECK(got.stats.status == Status::ok);
+            CHECK(got.stats.residual <= slow.tolerance);
+            std::vector<double> correction(want.velocities.size());
+            for (std::size_t n = 0; n < correction.size(); ++n)
+                correction[n] = want.velocities[n] - cloth.velocities[n];
+            // Two solves that meet the tolerance, an iteration apart.
+            CHECK(difference(got.velocities, want.velocities) <= 2.0 * 1e-2 * norm(correction));
+        }
+    // The fiftieth iteration is the last, wherever it is done.
+    Parameters hopeless = slow;
+    hopeless.tolerance = 1e-7f;
+    hopeless.regularization = 1.0f;
+    for (const Options& options : {many_groups, one_group}) {
+        const Filtered got = filter_on_device(cloth, options, hopeless);
+        CHECK(got.stats.cg_iterations == 50);
+        CHECK(got.stats.status == Status::not_converged);
+    }
+}
+
+TEST_CASE("adaptive alpha: raised, restored and kept between calls as the reference does it", "[filter]") {
+    const MovingCloth cloth = moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 2);
+    const Parameters tight_budget{
+        .regularization = 1.01f, .sub_steps = 4, .tolerance = 1e-2f, .max_iterations = 6, .adaptive_iterations = 5};
+    const Parameters roomy{
+        .regularization = 1.3f, .sub_steps = 2, .tolerance = 0.1f, .max_iterations = 50, .adaptive_iterations = 40};
+    for (Options options : variants) {
+        if (options.matrix == Matrix::printed) continue;  // amplifies what differs, see docs/formulation.md
+        for (const std::uint32_t work_group_size : {1u, 64u}) {
+            options.work_group_size = work_group_size;
+            CAPTURE(variant_name(options));
+            StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+            reference::StrainLimiter expected(cloth.topology, options.matrix);
+            int unconverged = 0;
+            for (const Parameters& parameters : {tight_budget, tight_budget, tight_budget, roomy, roomy, roomy}) {
+                const CallerBuffers buffers({&cloth, 1}, options);
+                const Stats got = filter(limiter, buffers, {&parameters, 1})[0];
+                std::vector<double> velocities = cloth.velocities;
+                expected.enqueue({cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, {}}, parameters);
+                const Stats want = expected.read_stats();
+                CHECK(got.status == want.status);
+                CHECK(std::abs(got.cg_iterations - want.cg_iterations) <= want.sub_steps);
+                unconverged += want.status == Status::not_converged;
+                std::vector<double> correction(velocities);
+                for (std::size_t n = 0; n < correction.size(); ++n) correction[n] -= cloth.velocities[n];
+                const std::vector<float> read = buffers.read_velocities();
+                const std::vector<double> filtered(read.begin(), read.end());
+                CHECK(difference(filtered, velocities) <= 0.02 * norm(correction));
+            }
+            // It begins too hard, and α rises until it is not.
+            CHECK(unconverged > 0);
+            CHECK(unconverged < 3);
+            // Off again: a limiter that never adapted gives the same bytes.
+            const Parameters plain{.sub_steps = 2};
+            const CallerBuffers after({&cloth, 1}, options), fresh({&cloth, 1}, options);
+            Parameters adapting = plain;
+            adapting.adaptive_iterations = 1;
+            filter(limiter, CallerBuffers({&cloth, 1}, options), {&adapting, 1});
+            filter(limiter, CallerBuffers({&cloth, 1}, options), {&plain, 1});  // the factor is left behind here
+            filter(limiter, after, {&plain, 1});
+            StrainLimiter another(device().context, device().id, cloth.topology, options);
+            filter(another, fresh, {&plain, 1});
+            CHECK(same_bytes(after.read_velocities(), fresh.read_velocities()));
         }
     }
 }
@@ -142,20 +239,66 @@ TEST_CASE("several cloths in one limiter: as each one alone", "[filter]") {
     }
 }
 
+TEST_CASE("many cloths in one launch: each the very bytes it has alone", "[filter]") {
+    // More than one block of parameters, everything different.
+    std::vector<MovingCloth> cloths;
+    std::vector<Parameters> parameters;
+    const std::vector<Mesh> different{grid(9, 11, 1.0, 1.0, Diagonals::alternating), fan(9), right_triangle()};
+    for (std::uint32_t n = 0; n < 5; ++n)
+        for (const Mesh& mesh : different)
+            for (const float alpha : {1.05f, 1.6f}) {
+                const auto count = static_cast<std::int32_t>(cloths.size());
+                cloths.push_back(moving_cloth(mesh, n + 1));
+                parameters.push_back({.time_step = n % 2 == 0 ? 1.0f / 60.0f : 0.01f,
+                                      .regularization = alpha,
+                                      .sub_steps = count % 5,
+                                      .target_area_change = count % 3 == 0 ? 0.05f : 0.0f,
+                                      .tolerance = count % 2 == 0 ? 0.1f : 1e-3f,
+                                      .max_iterations = 3 + 7 * (count % 4),
+                                      .adaptive_iterations = count % 4 == 1 ? 2 : 0});
+            }
+    REQUIRE(cloths.size() > 24);
+    std::vector<std::shared_ptr<const Topology>> topologies;
+    for (const MovingCloth& cloth : cloths) topologies.push_back(cloth.topology);
+    for (const std::uint32_t work_group_size : {1u, 64u}) {
+        Options options = one_group;
+        options.work_group_size = work_group_size;
+        StrainLimiter limiter(device().context, device().id, topologies, options);
+        const CallerBuffers buffers(cloths, options);
+        const std::vector<Stats> stats = filter(limiter, buffers, parameters);
+        const std::vector<float> velocities = buffers.read_velocities();
+        auto own = velocities.begin();
+        for (std::size_t c = 0; c < cloths.size(); ++c) {
+            CAPTURE(work_group_size, c);
+            StrainLimiter alone(device().context, device().id, cloths[c].topology, options);
+            const CallerBuffers own_buffers({&cloths[c], 1}, options);
+            const std::vector<Stats> own_stats = filter(alone, own_buffers, {&parameters[c], 1});
+            const std::vector<float> expected = own_buffers.read_velocities();
+            const auto end = own + static_cast<std::ptrdiff_t>(expected.size());
+            CHECK(same_bytes({own, end}, expected));
+            CHECK(same_bytes({stats[c]}, own_stats));
+            own = end;
+        }
+    }
+}
+
 TEST_CASE("a cloth that diverges leaves the others alone", "[filter]") {
-    std::vector<MovingCloth> cloths{moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1),
-                                    moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::uniform), 2)};
-    const Filtered alone = filter_on_device(cloths[1], {}, Parameters{});
-    cloths[0].positions[40] = std::nan("");
-    const std::vector<std::shared_ptr<const Topology>> topologies{cloths[0].topology, cloths[1].topology};
-    StrainLimiter limiter(device().context, device().id, topologies);
-    const CallerBuffers buffers(cloths, {});
-    const Parameters parameters;
-    const std::vector<Stats> stats = filter(limiter, buffers, {&parameters, 1});
-    CHECK(stats[0].status == Status::diverged);
-    CHECK(stats[1].status == Status::ok);
-    const std::vector<float> velocities = buffers.read_velocities();
-    const std::vector<double> second(velocities.begin() + cloths[0].velocities.size(), velocities.end());
-    // Equal cloths, equal groups: equal bytes.
-    CHECK(second == alone.velocities);
+    for (const Options& options : {many_groups, one_group}) {
+        CAPTURE(variant_name(options));
+        std::vector<MovingCloth> cloths{moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1),
+                                        moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::uniform), 2)};
+        const Filtered alone = filter_on_device(cloths[1], options, Parameters{});
+        cloths[0].positions[40] = std::nan("");
+        const std::vector<std::shared_ptr<const Topology>> topologies{cloths[0].topology, cloths[1].topology};
+        StrainLimiter limiter(device().context, device().id, topologies, options);
+        const CallerBuffers buffers(cloths, options);
+        const Parameters parameters;
+        const std::vector<Stats> stats = filter(limiter, buffers, {&parameters, 1});
+        CHECK(stats[0].status == Status::diverged);
+        CHECK(stats[1].status == Status::ok);
+        const std::vector<float> velocities = buffers.read_velocities();
+        const std::vector<double> second(velocities.begin() + cloths[0].velocities.size(), velocities.end());
+        // Equal cloths, equal groups: equal bytes.
+        CHECK(second == alone.velocities);
+    }
 }

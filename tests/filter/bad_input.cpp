@@ -43,7 +43,7 @@ MovingCloth a_cloth() {
 TEST_CASE("input that is not finite is diverged, and the velocities stay", "[filter]") {
     for (const Options& options : variants)
         for (const double bad : {not_a_number, infinity, -infinity, 1e38}) {
-            CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply), bad);
+            CAPTURE(variant_name(options), bad);
             MovingCloth positions = a_cloth();
             positions.positions[100] = bad;
             check_diverged(positions, options);
@@ -73,7 +73,7 @@ TEST_CASE("an isolated vertex that is not finite does not spread, and keeps its 
 
 TEST_CASE("triangles without area, wholly pinned, or without rest area take no part and harm nobody", "[filter]") {
     for (const Options& options : variants) {
-        CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply));
+        CAPTURE(variant_name(options));
         MovingCloth degenerate = a_cloth();
         for (const std::size_t v : {30, 31, 32})
             for (std::size_t k = 0; k < 3; ++k) {

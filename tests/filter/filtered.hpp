@@ -7,14 +7,24 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace apsl::test {
 
-constexpr std::array<Options, 4> variants{{{.matrix = Matrix::consistent, .apply = Apply::assembled_csr},
-                                           {.matrix = Matrix::consistent, .apply = Apply::matrix_free},
-                                           {.matrix = Matrix::printed, .apply = Apply::assembled_csr},
-                                           {.matrix = Matrix::printed, .apply = Apply::matrix_free}}};
+/// Every matrix, way to apply it and execution. Written out: on small meshes automatic execution is one_group.
+constexpr std::array<Options, 5> variants{
+    {{.matrix = Matrix::consistent, .apply = Apply::assembled_csr, .execution = Execution::many_groups},
+     {.matrix = Matrix::consistent, .apply = Apply::matrix_free, .execution = Execution::many_groups},
+     {.matrix = Matrix::printed, .apply = Apply::assembled_csr, .execution = Execution::many_groups},
+     {.matrix = Matrix::printed, .apply = Apply::matrix_free, .execution = Execution::many_groups},
+     {.matrix = Matrix::consistent, .apply = Apply::matrix_free, .execution = Execution::one_group}}};
+/// Those of the consistent matrix, matrix-free.
+constexpr Options many_groups = variants[1];
+constexpr Options one_group = variants[4];
+
+/// For messages: "printed, assembled, many groups of 64".
+std::string variant_name(const Options& options);
 
 /// What a call left of one cloth.
 struct Filtered {
@@ -30,6 +40,9 @@ Filtered filter_with_reference(const MovingCloth& cloth, const Options& options,
 /// Device against reference: velocities, statistics, and the statistics against areas in double precision.
 void check_against_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
                              std::size_t offset = 0);
+
+void check_against_reference(const Filtered& got, const MovingCloth& cloth, const Options& options,
+                             const Parameters& parameters);
 
 /// max |A − A⁰| / A⁰ at the end of a step with these velocities, in double precision; rest areas ≤ 0 left out.
 double max_area_change(const MovingCloth& cloth, const std::vector<double>& velocities, double time_step);

@@ -106,7 +106,7 @@ TEST_CASE("pinned vertices keep every bit of their velocities", "[filter]") {
 
 TEST_CASE("the target area change ends a call early, and is then met", "[filter]") {
     const MovingCloth cloth = alternating(17);
-    for (const Options& options : {variants[0], variants[1]}) {
+    for (const Options& options : {variants[0], many_groups, one_group}) {
         const Filtered all = filter_on_device(cloth, options, {.sub_steps = 30});
         const Filtered some = filter_on_device(cloth, options, {.sub_steps = 30, .target_area_change = 0.08f});
         const Filtered none = filter_on_device(cloth, options, {.sub_steps = 30, .target_area_change = 10.0f});
@@ -198,9 +198,10 @@ TEST_CASE("two calls on the same input give the same bytes", "[filter]") {
 
 TEST_CASE("two calls queued one after the other: the second works on what the first left", "[filter]") {
     const MovingCloth cloth = alternating(17);
-    StrainLimiter limiter(device().context, device().id, cloth.topology);
+    const Options options = GENERATE(many_groups, one_group);
+    StrainLimiter limiter(device().context, device().id, cloth.topology, options);
     const Parameters parameters{.sub_steps = 3};
-    const CallerBuffers waited({&cloth, 1}, {}), queued({&cloth, 1}, {});
+    const CallerBuffers waited({&cloth, 1}, options), queued({&cloth, 1}, options);
     filter(limiter, waited, {&parameters, 1});
     filter(limiter, waited, {&parameters, 1});
     const Owned<cl_command_queue> queue = in_order_queue();

@@ -13,7 +13,7 @@ TEST_CASE("every variant on a small grid, for a memory checker", "[filter][oclgr
     for (Options options : variants)
         for (const std::uint32_t work_group_size : {1u, 32u}) {
             options.work_group_size = work_group_size;
-            CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply), work_group_size);
+            CAPTURE(variant_name(options));
             check_against_reference(cloth, options, parameters);
         }
 }
