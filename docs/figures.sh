@@ -14,9 +14,9 @@ case "$part" in
 esac
 
 cmake/debian_packages.sh
-cmake --preset dev -DAPSL_BUILD_TESTS=OFF >/dev/null
-cmake --build --preset dev --target apsl_program
-program=build/dev/apsl
+cmake --preset program >/dev/null
+cmake --build --preset program
+program=build/program/apsl
 runs=out/figures
 mkdir -p "$runs" docs/pictures docs/charts
 

@@ -11,9 +11,9 @@ frames=${FRAMES:-180}
   || { echo "error: FRAMES=$frames: expected a whole number above $picture_frame" >&2; exit 2; }
 
 cmake/debian_packages.sh
-cmake --preset dev -DAPSL_BUILD_TESTS=OFF >/dev/null
-cmake --build --preset dev --target apsl_program
-program=build/dev/apsl
+cmake --preset program >/dev/null
+cmake --build --preset program
+program=build/program/apsl
 
 "$program" run scenes/curtain_unfiltered.json --frames "$frames" --out out/curtain_unfiltered
 "$program" run scenes/curtain.json --frames "$frames" --out out/curtain
