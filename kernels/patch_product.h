@@ -15,6 +15,18 @@
 #define APSL_PATCH_VERTICES 1024
 #endif
 
+// A CPU's core works through patches one after another: while it multiplies one, the gradients and residuals of the
+// next come into its cache. The gather jumps about in them, which the hardware's own prefetching cannot follow.
+#if APSL_WORK_GROUP_SIZE == 1 && defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+#define APSL_PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address))
+#endif
+#endif
+#ifndef APSL_PREFETCH
+#define APSL_PREFETCH(address)
+#endif
+#define APSL_PREFETCH_TRIANGLES 2048
+
 // This work-item's part of r·q.
 APSL_INLINE float multiply_patches(apsl_cloth cloth, bool active, __global const uint2* patches,
                                    __global const uint* patch_vertices, __global const ushort* local_triangles,
@@ -32,6 +44,8 @@ APSL_INLINE float multiply_patches(apsl_cloth cloth, bool active, __global const
             forces[n - first.y] = sum_over_corners(corner_offsets, corners, gradients, residual, patch_vertices[n]);
         group_barrier();
         for (uint a = first.x + (uint)get_local_id(0); a < last.x; a += APSL_WORK_GROUP_SIZE) {
+            APSL_PREFETCH(gradients + a + APSL_PREFETCH_TRIANGLES);
+            APSL_PREFETCH(residual + a + APSL_PREFETCH_TRIANGLES);
             const ushort3 v = vload3(a, local_triangles);
             const float r = residual[a];
             const float4 terms = corner_gradient(gradients, 4u * a) * forces[v.x] +
