@@ -12,9 +12,10 @@
 #include "layout.h"
 
 // 32 bytes a triangle. Corner n's gradient is entry n of the array taken as short4, n = 4 · triangle + corner number.
+// Three members, not an array of three: a checker that knows the array's length would call those indices out of bounds.
 typedef struct {
-    short4 corner[3];  // w is zero
-    float shift;       // (α − 1)/α
+    short4 corner_0, corner_1, corner_2;  // w is zero
+    float shift;                          // (α − 1)/α
     float unused;
 } apsl_gradients;
 

@@ -17,7 +17,7 @@
 
 // A CPU's core works through patches one after another: while it multiplies one, the gradients and residuals of the
 // next come into its cache. The gather jumps about in them, which the hardware's own prefetching cannot follow.
-#if APSL_WORK_GROUP_SIZE == 1 && defined(__has_builtin)
+#if APSL_WORK_GROUP_SIZE == 1 && defined(__has_builtin) && !defined(APSL_PREFETCH)
 #if __has_builtin(__builtin_prefetch)
 #define APSL_PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address))
 #endif

@@ -65,9 +65,11 @@ Owned<cl_command_queue> queue(cl_command_queue_properties properties, cl_int& st
     return status == CL_SUCCESS ? Owned<cl_command_queue>(made, clReleaseCommandQueue) : nullptr;
 }
 
-const Owned<cl_command_queue>& transfer_queue() {
-    static const Owned<cl_command_queue> queue = in_order_queue();
-    return queue;
+// Like the context never released: when static objects are destroyed, a driver may have let go of what it needs to
+// release them with (Oclgrind then writes to memory it has freed).
+cl_command_queue transfer_queue() {
+    static const auto* const queue = new Owned<cl_command_queue>(in_order_queue());
+    return queue->get();
 }
 
 }  // namespace
@@ -125,9 +127,9 @@ GuardedMemory::GuardedMemory(const void* contents, std::size_t bytes) : bytes_(b
 
 void GuardedMemory::read(void* contents) const {
     std::vector<unsigned char> all(bytes_ + 2 * band_);
-    require_success(clEnqueueReadBuffer(transfer_queue().get(), whole_.get(), CL_TRUE, 0, all.size(), all.data(), 0,
-                                        nullptr, nullptr),
-                    "clEnqueueReadBuffer");
+    require_success(
+        clEnqueueReadBuffer(transfer_queue(), whole_.get(), CL_TRUE, 0, all.size(), all.data(), 0, nullptr, nullptr),
+        "clEnqueueReadBuffer");
     for (std::size_t n = 0; n < all.size(); ++n) {
         const bool in_band = n < band_ || n >= band_ + bytes_;
         if (in_band && all[n] != band_byte)
@@ -139,9 +141,9 @@ void GuardedMemory::read(void* contents) const {
 }
 
 void GuardedMemory::write(const void* contents) {
-    require_success(clEnqueueWriteBuffer(transfer_queue().get(), whole_.get(), CL_TRUE, band_, bytes_, contents, 0,
-                                         nullptr, nullptr),
-                    "clEnqueueWriteBuffer");
+    require_success(
+        clEnqueueWriteBuffer(transfer_queue(), whole_.get(), CL_TRUE, band_, bytes_, contents, 0, nullptr, nullptr),
+        "clEnqueueWriteBuffer");
 }
 
 }  // namespace apsl::test
