@@ -21,6 +21,8 @@ static_assert(static_cast<int>(apsl::Status::diverged) == APSL_LIMITER_DIVERGED)
 static_assert(static_cast<int>(apsl::ErrorCode::unsupported) == APSL_ERROR_UNSUPPORTED);
 static_assert(static_cast<int>(apsl::Matrix::printed) == APSL_MATRIX_PRINTED);
 static_assert(static_cast<int>(apsl::Apply::matrix_free) == APSL_APPLY_MATRIX_FREE);
+static_assert(static_cast<int>(apsl::Execution::many_groups) == APSL_EXECUTION_MANY_GROUPS);
+static_assert(static_cast<int>(apsl::Execution::one_group) == APSL_EXECUTION_ONE_GROUP);
 
 std::string& last_error() {
     thread_local std::string message;
@@ -65,6 +67,7 @@ std::span<const cl_event> events(cl_uint wait_count, const cl_event* wait_list) 
 apsl::Options options_from(const apsl_limiter_options& o) {
     return {.matrix = static_cast<apsl::Matrix>(o.matrix),
             .apply = static_cast<apsl::Apply>(o.apply),
+            .execution = static_cast<apsl::Execution>(o.execution),
             .work_group_size = o.work_group_size,
             .position_stride = o.position_stride,
             .velocity_stride = o.velocity_stride,
@@ -95,6 +98,7 @@ apsl_limiter_options apsl_limiter_default_options(void) {
     const apsl::Options o;
     return {static_cast<int32_t>(o.matrix),
             static_cast<int32_t>(o.apply),
+            static_cast<int32_t>(o.execution),
             o.work_group_size,
             o.position_stride,
             o.velocity_stride,

@@ -32,6 +32,13 @@ typedef enum apsl_result {
 typedef enum apsl_matrix { APSL_MATRIX_CONSISTENT = 0, APSL_MATRIX_PRINTED = 1 } apsl_matrix;
 typedef enum apsl_apply { APSL_APPLY_ASSEMBLED_CSR = 0, APSL_APPLY_MATRIX_FREE = 1 } apsl_apply;
 
+/* How a call is divided over the device. */
+typedef enum apsl_execution {
+    APSL_EXECUTION_AUTOMATIC = 0,   /* one group where the largest cloth is small, many otherwise */
+    APSL_EXECUTION_MANY_GROUPS = 1, /* each step of the filter is a launch over all of a cloth */
+    APSL_EXECUTION_ONE_GROUP = 2    /* one work-group a cloth, the whole call in one launch; consistent, matrix-free */
+} apsl_execution;
+
 /* How a call ended, apsl_limiter_stats.status. */
 typedef enum apsl_limiter_status {
     APSL_LIMITER_OK = 0,
@@ -46,6 +53,7 @@ typedef struct apsl_limiter apsl_limiter;
 typedef struct apsl_limiter_options {
     int32_t matrix;                      /* apsl_matrix */
     int32_t apply;                       /* apsl_apply */
+    int32_t execution;                   /* apsl_execution */
     uint32_t work_group_size;            /* a power of two; 0 takes what suits the device */
     uint32_t position_stride;            /* floats from one vertex to the next, >= 3 */
     uint32_t velocity_stride;            /* likewise */

@@ -33,24 +33,29 @@ struct CTopology {
 
 }  // namespace
 
-TEST_CASE("the C interface does what the C++ one does, byte for byte", "[embed]") {
+TEST_CASE("the C interface does what the C++ one does, byte for byte, in every execution", "[embed]") {
     const MovingCloth cloth = moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1);
-    const CallerBuffers expected({&cloth, 1}, {}), buffers({&cloth, 1}, {});
-    StrainLimiter limiter(device().context, device().id, cloth.topology);
     const Parameters parameters;
-    const std::vector<Stats> expected_stats = filter(limiter, expected, {&parameters, 1});
+    for (const apsl_execution execution :
+         {APSL_EXECUTION_AUTOMATIC, APSL_EXECUTION_MANY_GROUPS, APSL_EXECUTION_ONE_GROUP}) {
+        CAPTURE(static_cast<int>(execution));
+        const Options options{.execution = static_cast<Execution>(execution)};
+        const CallerBuffers expected({&cloth, 1}, options), buffers({&cloth, 1}, options);
+        StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+        const std::vector<Stats> expected_stats = filter(limiter, expected, {&parameters, 1});
 
-    const Owned<cl_command_queue> queue = in_order_queue();
-    const apsl_limiter_buffers views = c_views(buffers);
-    apsl_limiter_stats stats{};
-    std::size_t scratch_bytes = 0;
-    REQUIRE(filter_in_c(device().context, device().id, queue.get(), cloth.topology->triangles().data()->data(),
-                        cloth.topology->triangle_count(), cloth.topology->vertex_count(), &views, &stats,
-                        &scratch_bytes) == APSL_SUCCESS);
-    CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
-    CHECK(std::memcmp(&stats, expected_stats.data(), sizeof stats) == 0);
-    CHECK(stats.sub_steps == parameters.sub_steps);
-    CHECK(scratch_bytes == limiter.scratch_bytes());
+        const Owned<cl_command_queue> queue = in_order_queue();
+        const apsl_limiter_buffers views = c_views(buffers);
+        apsl_limiter_stats stats{};
+        std::size_t scratch_bytes = 0;
+        REQUIRE(filter_in_c(device().context, device().id, queue.get(), cloth.topology->triangles().data()->data(),
+                            cloth.topology->triangle_count(), cloth.topology->vertex_count(), execution, &views, &stats,
+                            &scratch_bytes) == APSL_SUCCESS);
+        CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
+        CHECK(std::memcmp(&stats, expected_stats.data(), sizeof stats) == 0);
+        CHECK(stats.sub_steps == parameters.sub_steps);
+        CHECK(scratch_bytes == limiter.scratch_bytes());
+    }
 }
 
 TEST_CASE("the C interface: every error is a result and one line, nothing is thrown", "[embed]") {
@@ -84,6 +89,17 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
           APSL_ERROR_INVALID_ARGUMENT);
     CHECK(limiter == nullptr);
     last_error_says("position_stride is 1");
+    options = apsl_limiter_default_options();
+    options.execution = 3;
+    CHECK(apsl_limiter_create(device().context, device().id, cloths, 1, &options, &limiter) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(limiter == nullptr);
+    last_error_says("execution");
+    options.execution = APSL_EXECUTION_ONE_GROUP;
+    options.matrix = APSL_MATRIX_PRINTED;
+    CHECK(apsl_limiter_create(device().context, device().id, cloths, 1, &options, &limiter) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    last_error_says("one_group");
     CHECK(apsl_limiter_create(device().context, device().id, cloths, 2, nullptr, &limiter) ==
           APSL_ERROR_INVALID_ARGUMENT);
     last_error_says("topology is null");
@@ -133,6 +149,7 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     const Options options;
     CHECK(o.matrix == static_cast<int>(options.matrix));
     CHECK(o.apply == static_cast<int>(options.apply));
+    CHECK(o.execution == static_cast<int>(options.execution));
     CHECK(o.work_group_size == options.work_group_size);
     CHECK(o.position_stride == options.position_stride);
     CHECK(o.velocity_stride == options.velocity_stride);
