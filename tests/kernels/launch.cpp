@@ -22,8 +22,9 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
                                 define("APSL_VELOCITY_STRIDE", arrays.velocity_placement.stride) +
                                 define("APSL_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
                                 define("APSL_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0);
-    static std::map<std::string, host::ProgramHandle> programs;
-    static std::map<std::string, host::Kernel> kernels;
+    // Never released, see transfer_queue() in support/opencl.cpp.
+    static auto& programs = *new std::map<std::string, host::ProgramHandle>;
+    static auto& kernels = *new std::map<std::string, host::Kernel>;
     const std::string program_key = std::string(file) + options;
     if (!programs.contains(program_key))
         programs[program_key] =
@@ -35,7 +36,7 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
 }
 
 void run(const host::Kernel& kernel, std::uint32_t groups, const Build& build, std::size_t cloths) {
-    static const Owned<cl_command_queue> queue = in_order_queue();
+    static const auto& queue = *new Owned<cl_command_queue>(in_order_queue());
     const std::array<std::size_t, 2> global{std::size_t{groups} * build.work_group_size, cloths};
     const std::array<std::size_t, 2> local{build.work_group_size, 1};
     require_success(clEnqueueNDRangeKernel(queue.get(), kernel.handle.get(), 2, nullptr, global.data(), local.data(), 0,
