@@ -195,10 +195,11 @@ TEST_CASE("only a profiled run lists kernels") {
 
 TEST_CASE("an interrupted run says so and leaves nothing that names itself whole") {
     const TemporaryFolder folder;
-    // `timeout` stands in for the user's Ctrl-C.
+    // `timeout` stands in for the user's Ctrl-C. In the foreground it signals the program alone: otherwise it signals
+    // the whole group as well, and a second signal, where it arrives as a second one, ends the program at once.
     const ProgramRun run = run_apsl("run " + scene_path("curtain_unfiltered.json") + " --frames 1000000 --out " +
                                         folder.path().string() + " --report " + (folder.path() / "r.json").string(),
-                                    "timeout --signal=INT 3");
+                                    "timeout --foreground --signal=INT 3");
     CHECK_THAT(run.errors, Catch::Contains("interrupted after "));
     const std::set<std::string> names = file_names(folder.path());
     CHECK(names.count("frame_0000.vtp") == 1);
