@@ -9,8 +9,14 @@
 namespace apsl::host {
 namespace {
 
-// Measured by bench/kernels: below this many triangles a cloth in one group beats the launches it saves.
-constexpr std::size_t one_group_triangles = 6144;
+// Up to so many triangles one group beats the launches it saves. Measured by bench/kernels on a CPU of two units, where
+// a cloth in one group leaves one of them idle: at 8,192 triangles still, at 32,768 no more. With more units more is
+// idle.
+std::size_t one_group_triangles(const DeviceFacts& facts) {
+    constexpr std::size_t least = 6144;
+    return facts.is_cpu && facts.compute_units > 1 ? least * facts.compute_units / (facts.compute_units - 1) : least;
+}
+
 // Above this many a launch costs nothing beside its work, and a solve finished by one group would be slow.
 constexpr std::size_t finish_triangles = 65536;
 // Enough for α = 1.2 at tolerance 0.1, which takes three to five; even, so that residuals end in the even slot.
@@ -28,11 +34,11 @@ bool matrix_free_consistent(const Options& options) {
     return options.matrix == Matrix::consistent && options.apply == Apply::matrix_free;
 }
 
-Execution resolve_execution(const Options& options, std::size_t largest) {
+Execution resolve_execution(const Options& options, const DeviceFacts& facts, std::size_t largest) {
     switch (options.execution) {
         case Execution::automatic:
-            return matrix_free_consistent(options) && largest <= one_group_triangles ? Execution::one_group
-                                                                                     : Execution::many_groups;
+            return matrix_free_consistent(options) && largest <= one_group_triangles(facts) ? Execution::one_group
+                                                                                            : Execution::many_groups;
         case Execution::many_groups:
             return options.execution;
         case Execution::one_group:
@@ -56,7 +62,7 @@ Options resolve(Options options, const DeviceFacts& facts, std::span<const std::
     check_stride(options.velocity_stride, "velocity_stride");
     if (options.matrix != Matrix::consistent && options.matrix != Matrix::printed) invalid("unknown matrix");
     if (options.apply != Apply::assembled_csr && options.apply != Apply::matrix_free) invalid("unknown apply");
-    options.execution = resolve_execution(options, largest_triangle_count(cloths));
+    options.execution = resolve_execution(options, facts, largest_triangle_count(cloths));
     if (options.work_group_size == 0)
         options.work_group_size =
             facts.is_cpu
