@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Conjugate Gradient with one reduction point an iteration (Chronopoulos and Gear 1989), stopped on the device.
 //
-// Iteration k, in the scaled unknowns of gradients.h, is two or three launches:
-//   (matrix-free, consistent)  gather_vertex_forces    u = ½ w Σ ĝ r
-//   *_apply_dot / *_spmv_dot                           q = A r, partial sums of r·q
-//   cg_update                                          p = r + βp, s = q + βs, y += αp, r −= αs, partial sums of r·r
+// Iteration k, in the scaled unknowns of gradients.h, is two launches:
+//   *_apply_dot / *_spmv_dot   q = A r, partial sums of r·q
+//   cg_update                  p = r + βp, s = q + βs, y += αp, r −= αs, partial sums of r·r
 // The first of them decides for all whether the iteration is done (begin_iteration). It decides by ‖r‖ in m², not by
 // the scaled r̄·r̄ that CG itself minimises over: the scaled one weighs a triangle beside a pin too little to see it.
 #ifndef APSL_CONJUGATE_GRADIENT_H

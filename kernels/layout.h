@@ -88,6 +88,5 @@ typedef struct {
 
 // A corner in device memory: 4 · triangle + corner number, so that no division is needed.
 #define APSL_CORNER_TRIANGLE(corner) ((corner) >> 2)
-#define APSL_CORNER_NUMBER(corner) ((corner) & 3u)
 
 #endif
