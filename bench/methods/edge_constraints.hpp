@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "methods/method.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace apsl::methods {
+
+/// C = |x_b − x_a| − L.
+struct EdgeConstraint {
+    std::array<std::uint32_t, 2> vertices;
+    std::array<float, 2> inverse_masses;  ///< 1/kg
+    float rest_length;                    ///< m, L
+};
+
+/// One for each edge of the mesh, in its order, but for those with two pinned ends: nothing could move.
+std::vector<EdgeConstraint> edge_constraints(const Cloth& cloth);
+
+}  // namespace apsl::methods

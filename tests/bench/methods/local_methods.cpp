@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// What holds for the methods that go constraint by constraint.
+
+#include "bench/methods/sample_cloths.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace apsl;
+using namespace apsl::test;
+using methods::Cloth;
+
+namespace {
+
+const char* const local_methods[] = {"pbd_edges"};
+
+}  // namespace
+
+TEST_CASE("Without pins, an iteration keeps the centre of mass", "[methods]") {
+    Cloth cloth = cloth_of(grid(7, 5, 1.0, 0.8, Diagonals::random));
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v)
+        cloth.inverse_masses[v] = 0.5 + 0.3 * static_cast<double>(v % 5);
+    const auto start = stretched(cloth, 1.25f);
+    for (const char* const method : local_methods) {
+        INFO(method);
+        const auto moved = projected(cloth, method, start, {{"iterations", 1}});
+        CHECK((first_moment(cloth, moved) - first_moment(cloth, start)).norm() < 1e-5);
+    }
+}
+
+TEST_CASE("A cloth collapsed to a point has no direction to be pushed in, and stays", "[methods]") {
+    const Cloth cloth = hanging_grid(5);
+    const std::vector<Eigen::Vector3f> point(25, Eigen::Vector3f(1.0f, 2.0f, 3.0f));
+    for (const char* const method : local_methods) {
+        INFO(method);
+        CHECK(same_bytes(projected(cloth, method, point), point));
+    }
+}
