@@ -8,6 +8,7 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <set>
@@ -76,7 +77,9 @@ TEST_CASE("Cloth at rest stays, pinned vertices keep their bits", "[methods]") {
         for (std::size_t v = 0; v < rest.size(); ++v) CHECK((at_rest[v] - rest[v]).norm() < 1e-5f);
         const auto start = stretched(cloth, 1.3f);
         const auto moved = projected(cloth, info.name, start);
-        CHECK((moved[40] - start[40]).norm() > 1e-4f);
+        float farthest = 0.0f;
+        for (std::size_t v = 0; v < start.size(); ++v) farthest = std::max(farthest, (moved[v] - start[v]).norm());
+        CHECK(farthest > 0.01f);
         for (const std::size_t pinned : {0u, 8u}) CHECK(same_bytes({moved[pinned]}, {start[pinned]}));
     }
 }

@@ -12,7 +12,10 @@ using methods::Cloth;
 
 namespace {
 
-const char* const local_methods[] = {"pbd_edges"};
+const char* const local_methods[] = {
+    "pbd_edges",        "edge_limits_gauss_seidel", "edge_limits_jacobi", "pbd_area_gauss_seidel",
+    "pbd_area_colored", "pbd_area_jacobi",          "xpbd_edges",         "xpbd_area",
+    "ring_area"};
 
 }  // namespace
 
