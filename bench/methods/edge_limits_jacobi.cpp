@@ -59,7 +59,7 @@ public:
             for (std::size_t v = 0; v < vertex_count; ++v) parts_[v] = inverse_masses_[v] * count_at(v);
 #pragma omp for schedule(static)
             for (std::size_t v = 0; v < vertex_count; ++v)
-                if (inverse_masses_[v] > 0.0f && parts_[v] > 0.0f) positions[v] += inverse_masses_[v] * impulse(v);
+                if (parts_[v] > 0.0f) positions[v] += inverse_masses_[v] * impulse(v);
         }
     }
 
