@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include "methods/continuum_strain_limiting.hpp"
 #include "methods/edge_limits_gauss_seidel.hpp"
 #include "methods/edge_limits_jacobi.hpp"
+#include "methods/fast_projection.hpp"
+#include "methods/hierarchical_constraints.hpp"
+#include "methods/hierarchical_pbd.hpp"
 #include "methods/method.hpp"
+#include "methods/nonconforming_edge_midpoint.hpp"
 #include "methods/pbd_area_colored.hpp"
 #include "methods/pbd_area_gauss_seidel.hpp"
 #include "methods/pbd_area_jacobi.hpp"
 #include "methods/pbd_edges.hpp"
 #include "methods/ring_area.hpp"
+#include "methods/strain_based_dynamics.hpp"
 #include "methods/xpbd_area.hpp"
 #include "methods/xpbd_edges.hpp"
 
@@ -74,11 +80,22 @@ std::vector<double> knob_values(const MethodInfo& info, std::span<const Knob> kn
 
 std::span<const MethodInfo> all_methods() {
     static const std::vector<MethodInfo> methods = {
-        pbd_edges_info(),          edge_limits_gauss_seidel_info(),
-        edge_limits_jacobi_info(), pbd_area_gauss_seidel_info(),
-        pbd_area_colored_info(),   pbd_area_jacobi_info(),
-        xpbd_edges_info(),         xpbd_area_info(),
+        pbd_edges_info(),
+        edge_limits_gauss_seidel_info(),
+        edge_limits_jacobi_info(),
+        pbd_area_gauss_seidel_info(),
+        pbd_area_colored_info(),
+        pbd_area_jacobi_info(),
+        xpbd_edges_info(),
+        xpbd_area_info(),
         ring_area_info(),
+        continuum_strain_limiting_info(),
+        fast_projection_info(),
+        hierarchical_constraints_info(),
+        hierarchical_pbd_info(),
+        nonconforming_edge_midpoint_info(),
+        strain_based_dynamics_strain_info(),
+        strain_based_dynamics_area_info(),
     };
     return methods;
 }
