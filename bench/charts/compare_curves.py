@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Greatest area change per frame, one curve a method: the paper's Fig. 5 for all of them. From the results of
-`apsl compare` of a study with "keep_frames". Of a method with several runs the one that takes the most time of those
-within --milliseconds is drawn, so that all have about the same."""
+`apsl compare` of a study with "keep_frames". Of a method with several runs the most accurate of those within
+--milliseconds is drawn, or its quickest where none is."""
 
 import sys
 
