@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/commands.hpp"
+#include "run/extra_commands.hpp"
 #include "run/input_error.hpp"
 
 #include <apsl/error.hpp>
@@ -7,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <map>
 #include <new>
 #include <string>
@@ -61,6 +63,9 @@ int parse_and_run(int argument_count, char** arguments) {
         ->take_all()
         ->allow_extra_args(false);
 
+    std::function<int()> extra_command;
+    add_extra_commands(program, extra_command);
+
     try {
         program.parse(argument_count, arguments);
     } catch (const CLI::Success& success) {
@@ -70,6 +75,7 @@ int parse_and_run(int argument_count, char** arguments) {
     }
     if (program.get_subcommands().empty())
         return wrong_input("no command, expected run, devices or validate (see apsl --help)");
+    if (extra_command) return extra_command();
     if (run->parsed()) return run_command(options);
     if (validate->parsed()) return validate_command(options.scene, options.overrides);
     return devices_command();
