@@ -19,11 +19,9 @@ void add_extra_commands(CLI::App& program, std::function<int()>& chosen) {
     command->add_option("--frames", options->frames, "instead of the scenes'")
         ->check(CLI::Range(1, 2'000'000'000).description(""));
     command->add_option("--device", options->device, "number from apsl devices; default the first GPU, else 0");
-    command
-        ->add_option("--deviation", options->deviation_frames,
-                     "measure how far the vertices are from the converged solution, at frames a,b,... or at ten")
-        ->delimiter(',')
-        ->expected(0, CLI::detail::expected_max_vector_size);
+    command->add_flag("--deviation", options->measure_deviation,
+                      "measure how far the vertices are from the converged solution, at ten frames");
+    command->add_option("--deviation-frames", options->deviation_frames, "a,b,... instead of the ten")->delimiter(',');
     command->add_option("--run-seconds", options->run_seconds, "no frame of a run begins after so long; default 120")
         ->check(CLI::PositiveNumber.description(""));
     command->add_flag("--profile", options->profile,
@@ -33,10 +31,7 @@ void add_extra_commands(CLI::App& program, std::function<int()>& chosen) {
         "Time in the limiter is wall time, for ours with the transfers to and from the device.\n"
         "A method that diverges or runs out of time is a result.\n"
         "Example: apsl compare scenes/curtain.json --methods none,apsl,pbd_edges --out results.json");
-    command->callback([options, command, &chosen] {
-        options->measure_deviation = command->count("--deviation") > 0;
-        chosen = [options] { return compare::compare_command(*options); };
-    });
+    command->callback([options, &chosen] { chosen = [options] { return compare::compare_command(*options); }; });
 }
 
 }  // namespace apsl::scenes

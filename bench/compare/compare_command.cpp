@@ -46,7 +46,7 @@ Study assemble_study(const CompareOptions& options) {
                    options.methods.end();
         });
     }
-    if (options.measure_deviation) {
+    if (options.measure_deviation || !options.deviation_frames.empty()) {
         if (!study.deviation) study.deviation.emplace();
         if (!options.deviation_frames.empty()) study.deviation->frames = options.deviation_frames;
     }
