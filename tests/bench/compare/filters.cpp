@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compare/direct_filter.hpp"
 #include "compare/rival_filter.hpp"
+#include "pipeline/measures.hpp"
 #include "run/reference_filter.hpp"
 
 #include <array>
@@ -25,17 +26,7 @@ scenes::ClothState square() {
 }
 
 double greatest_area_change(const scenes::ClothState& cloth, double time_step) {
-    double greatest = 0.0;
-    for (const Triangle& t : cloth.topology->triangles()) {
-        const auto end = [&](std::uint32_t v) {
-            Eigen::Vector3d place;
-            for (int k = 0; k < 3; ++k) place[k] = cloth.positions[3 * v + k] + time_step * cloth.velocities[3 * v + k];
-            return place;
-        };
-        const double area = 0.5 * (end(t[1]) - end(t[0])).cross(end(t[2]) - end(t[0])).norm();
-        greatest = std::max(greatest, std::abs(area - 0.5) / 0.5);
-    }
-    return greatest;
+    return scenes::summarize(cloth, scenes::predicted_area_changes(cloth, time_step)).max;
 }
 
 }  // namespace
