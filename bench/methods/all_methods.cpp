@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include "methods/edge_limits_gauss_seidel.hpp"
+#include "methods/edge_limits_jacobi.hpp"
 #include "methods/method.hpp"
+#include "methods/pbd_area_colored.hpp"
+#include "methods/pbd_area_gauss_seidel.hpp"
+#include "methods/pbd_area_jacobi.hpp"
 #include "methods/pbd_edges.hpp"
+#include "methods/ring_area.hpp"
+#include "methods/xpbd_area.hpp"
+#include "methods/xpbd_edges.hpp"
 
 #include <apsl/error.hpp>
 
@@ -66,7 +74,11 @@ std::vector<double> knob_values(const MethodInfo& info, std::span<const Knob> kn
 
 std::span<const MethodInfo> all_methods() {
     static const std::vector<MethodInfo> methods = {
-        pbd_edges_info(),
+        pbd_edges_info(),          edge_limits_gauss_seidel_info(),
+        edge_limits_jacobi_info(), pbd_area_gauss_seidel_info(),
+        pbd_area_colored_info(),   pbd_area_jacobi_info(),
+        xpbd_edges_info(),         xpbd_area_info(),
+        ring_area_info(),
     };
     return methods;
 }

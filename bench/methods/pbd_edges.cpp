@@ -8,7 +8,7 @@
 // Gauss–Seidel, here color by color so that the edges of a color run in parallel.
 //
 // M. Müller, B. Heidelberger, M. Hennix, J. Ratcliff: Position based dynamics. Journal of Visual Communication and
-// Image Representation 18(2), 2007: Eq. (10), (11) and Section 3.3.
+// Image Representation 18(2), 2007: Section 3.3.
 #include "methods/pbd_edges.hpp"
 
 #include "methods/color_sweeps.hpp"
@@ -38,9 +38,7 @@ public:
             const Eigen::Vector3f along = positions[b] - positions[a];
             const float length = along.norm();
             if (!(length > 0.0f)) return;  // no direction to push in
-            const Eigen::Vector3f step = stiffness_ * (length - edge.rest_length) / (length * (wa + wb)) * along;
-            if (wa > 0.0f) positions[a] += wa * step;
-            if (wb > 0.0f) positions[b] -= wb * step;
+            edge.pull(stiffness_ * (length - edge.rest_length) / (length * (wa + wb)) * along, positions);
         });
     }
 
