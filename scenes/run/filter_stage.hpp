@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "run/custom_filter.hpp"
 #include "run/opencl_filter.hpp"
 #include "run/reference_filter.hpp"
 
@@ -12,8 +13,9 @@ namespace apsl::scenes {
 
 enum class Backend { opencl, reference };
 
-/// The strain limiting of a scene, or std::monostate where the scene names none: then no device is looked for.
-using FilterStage = std::variant<std::monostate, OpenClFilter, ReferenceFilter>;
+/// The strain limiting of a scene, or std::monostate where the scene names none: then no device is looked for. No scene
+/// asks for a CustomFilter: who compares limiters puts one in place.
+using FilterStage = std::variant<std::monostate, OpenClFilter, ReferenceFilter, CustomFilter>;
 
 /// `device`: set for Backend::opencl. Throws InputError for a list of regularizations that does not fit the mesh.
 inline FilterStage make_filter_stage(const Scene& scene, const ClothState& cloth, Backend backend,

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "run/commands.hpp"
+#include "run/extra_commands.hpp"
 #include "run/input_error.hpp"
+#include "tune/tune_command.hpp"
 
 #include <apsl/error.hpp>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <map>
 #include <new>
 #include <string>
@@ -61,6 +64,28 @@ int parse_and_run(int argument_count, char** arguments) {
         ->take_all()
         ->allow_extra_args(false);
 
+    TuneOptions tuning;
+    CLI::App* tune = program.add_subcommand("tune", "find the cheapest limiter settings that meet a target");
+    tune->add_option("SCENE", tuning.scene, "scene file, JSON")->required();
+    tune->add_option("--target", tuning.target, "greatest area change, 0.01 is 1 %")
+        ->required()
+        ->check(CLI::PositiveNumber.description(""));
+    tune->add_option("--budget-ms", tuning.budget_ms, "of the limiter, milliseconds a frame")
+        ->check(CLI::PositiveNumber.description(""));
+    tune->add_option("--device", tuning.device, "number from apsl devices; default the first GPU, else 0");
+    tune->add_option("--frames", tuning.frames, "tune on so many, instead of the scene's")
+        ->check(CLI::Range(1, 2'000'000'000).description(""));
+    tune->add_option("--out", tuning.out, "the tuned scene; standard output without");
+    tune->add_option("--set", tuning.overrides, "path=value: change a value of the scene; repeatable")
+        ->take_all()
+        ->allow_extra_args(false);
+    tune->footer(
+        "Exit: 0 the target is met, 1 nothing tried meets it (the best is written), 2 wrong input.\n"
+        "Example: apsl tune scenes/curtain.json --target 0.02 --out tuned.json");
+
+    std::function<int()> extra_command;
+    add_extra_commands(program, extra_command);
+
     try {
         program.parse(argument_count, arguments);
     } catch (const CLI::Success& success) {
@@ -69,7 +94,9 @@ int parse_and_run(int argument_count, char** arguments) {
         return wrong_input(std::string(error.what()) + " (see apsl --help)");
     }
     if (program.get_subcommands().empty())
-        return wrong_input("no command, expected run, devices or validate (see apsl --help)");
+        return wrong_input("no command, expected run, devices, validate or tune (see apsl --help)");
+    if (tune->parsed()) return tune_command(tuning);
+    if (extra_command) return extra_command();
     if (run->parsed()) return run_command(options);
     if (validate->parsed()) return validate_command(options.scene, options.overrides);
     return devices_command();

@@ -34,7 +34,8 @@ std::optional<std::size_t> as_index(const std::string& key) {
 }
 
 // A mesh that is a grid becomes a file by --set mesh.file=..., without taking the grid out first.
-void replace_other_kinds(nlohmann::json& document, const std::vector<std::string>& path) {
+template <class Json>
+void replace_other_kinds(Json& document, const std::vector<std::string>& path) {
     const std::vector<std::string> meshes{"grid", "tube", "file"};
     const std::vector<std::string> integrators{"implicit_springs", "stand_alone", "none"};
     if (path.size() < 2 || !document.contains(path[0]) || !document[path[0]].is_object()) return;
@@ -49,20 +50,21 @@ void replace_other_kinds(nlohmann::json& document, const std::vector<std::string
 
 }  // namespace
 
-void override_scene(nlohmann::json& document, const std::string& assignment) {
+template <class Json>
+void override_scene(Json& document, const std::string& assignment) {
     const std::size_t equals = assignment.find('=');
     const std::vector<std::string> path = split_path(assignment.substr(0, equals));
     if (equals == std::string::npos || std::find(path.begin(), path.end(), "") != path.end()) {
         throw InputError("--set " + assignment + ": expected path=value, such as strain_limiting.regularization=1.05");
     }
-    nlohmann::json value = nlohmann::json::parse(assignment.substr(equals + 1), nullptr, false);
+    Json value = Json::parse(assignment.substr(equals + 1), nullptr, false);
     if (value.is_discarded()) value = assignment.substr(equals + 1);
 
     replace_other_kinds(document, path);
-    nlohmann::json* place = &document;
+    Json* place = &document;
     for (std::size_t k = 0; k < path.size(); ++k) {
         const bool last = k + 1 == path.size();
-        if (place->is_null()) *place = nlohmann::json::object();
+        if (place->is_null()) *place = Json::object();
         if (place->is_object()) {
             if (last && value.is_null()) {
                 place->erase(path[k]);
@@ -82,8 +84,11 @@ void override_scene(nlohmann::json& document, const std::string& assignment) {
     }
     *place = std::move(value);
     if (path == std::vector<std::string>{"mesh", "file"} && place->is_string()) {
-        *place = std::filesystem::absolute(place->get<std::string>()).lexically_normal().string();
+        *place = std::filesystem::absolute(place->template get<std::string>()).lexically_normal().string();
     }
 }
+
+template void override_scene(nlohmann::json&, const std::string&);
+template void override_scene(nlohmann::ordered_json&, const std::string&);
 
 }  // namespace apsl::scenes

@@ -12,6 +12,8 @@ namespace apsl::scenes {
 /// takes the key out. Naming one kind of mesh or integrator puts it in place of the other kinds. A mesh file given
 /// here is relative to the working directory, as everything else on a command line is.
 /// Throws InputError where there is no "=", or where the path runs through something that has no such entry.
-void override_scene(nlohmann::json& document, const std::string& assignment);
+/// Instantiated for nlohmann::json and nlohmann::ordered_json.
+template <class Json>
+void override_scene(Json& document, const std::string& assignment);
 
 }  // namespace apsl::scenes

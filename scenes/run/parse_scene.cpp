@@ -264,13 +264,13 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
+nlohmann::ordered_json read_scene_document(const std::filesystem::path& file, std::span<const std::string> overrides) {
     if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such scene file");
     std::ifstream stream(file);
     if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
-    nlohmann::json document;
+    nlohmann::ordered_json document;
     try {
-        document = nlohmann::json::parse(stream);
+        document = nlohmann::ordered_json::parse(stream);
     } catch (const nlohmann::json::exception& error) {
         std::string reason = error.what();  // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
         if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
@@ -280,7 +280,11 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
         throw InputError(file.string() + ": not valid JSON: " + reason);
     }
     for (const std::string& assignment : overrides) override_scene(document, assignment);
-    return parse_scene(document, file.string());
+    return document;
+}
+
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
+    return parse_scene(nlohmann::json(read_scene_document(file, overrides)), file.string());
 }
 
 }  // namespace apsl::scenes

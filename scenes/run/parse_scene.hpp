@@ -17,6 +17,11 @@ namespace apsl::scenes {
 /// type or out of range.
 Scene parse_scene(const nlohmann::json& document, const std::string& file);
 
+/// A scene file's values in the order of the file, changed by `overrides` (see override_scene.hpp), not looked at
+/// further. Throws InputError for a file that is missing or no JSON (naming the line), or overrides that do not fit.
+nlohmann::ordered_json read_scene_document(const std::filesystem::path& file,
+                                           std::span<const std::string> overrides = {});
+
 /// Reads a scene file, changes it by `overrides` (see override_scene.hpp) and parses it.
 /// Throws InputError, also for a file that is missing or no JSON (naming the line).
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});

@@ -3,7 +3,7 @@
 
 #include "pipeline/advance.hpp"
 #include "pipeline/measures.hpp"
-#include "pipeline/springs.hpp"
+#include "run/scene_springs.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -45,34 +45,21 @@ Simulation::Simulation(const Scene& scene, SceneCloth cloth, FilterStage filter,
 }
 
 void Simulation::make_springs(const Scene& scene) {
-    const Topology& topology = *cloth_.topology;
-    if (const auto* implicit = std::get_if<ImplicitSpringsIntegrator>(&scene.integrator)) {
-        std::vector<Spring> springs;
-        if (implicit->stretch_stiffness > 0.0) {
-            springs = stretch_springs(topology, cloth_.rest_positions, implicit->stretch_stiffness);
-        }
-        if (implicit->bend_stiffness > 0.0) {
-            const auto bending = bending_springs(topology, cloth_.rest_positions, implicit->bend_stiffness);
-            springs.insert(springs.end(), bending.begin(), bending.end());
-        }
-        springs_.emplace(cloth_, std::move(springs), implicit->damping);
-    } else if (const auto* stand_alone = std::get_if<StandAloneIntegrator>(&scene.integrator)) {
-        StandAloneSprings made = stand_alone_springs(topology, cloth_.rest_positions, stand_alone->bend_stiffness);
-        if (const std::size_t added = made.between_lattices + made.connecting; added > 0) {
-            warnings_.push_back(
-                scene.file + ": integrator.stand_alone: bending springs left the cloth in " +
-                std::to_string(made.lattices) + " lattices that only areas join; " + std::to_string(added) +
-                " springs between them were added, an irregular mesh (a grid with random diagonals) needs none");
-        }
-        springs_.emplace(cloth_, std::move(made.springs), stand_alone->damping);
-    }
+    if (std::holds_alternative<NoIntegrator>(scene.integrator)) return;
+    SceneSprings made = make_scene_springs(scene, cloth_);
+    warnings_ = std::move(made.warnings);
+    springs_.emplace(cloth_, std::move(made.springs), made.damping);
 }
 
 void Simulation::name_stages(const Scene& scene) {
     if (moving_pins_) stages_.emplace_back("pin_motion");
     if (std::holds_alternative<ImplicitSpringsIntegrator>(scene.integrator)) stages_.emplace_back("implicit_springs");
     if (std::holds_alternative<StandAloneIntegrator>(scene.integrator)) stages_.emplace_back("stand_alone");
-    if (scene.strain_limiting) stages_.emplace_back("strain_limiting");
+    if (const auto* custom = std::get_if<CustomFilter>(&filter_)) {
+        stages_.push_back(custom->name);
+    } else if (scene.strain_limiting) {
+        stages_.emplace_back("strain_limiting");
+    }
     if (!scene.colliders.empty()) stages_.emplace_back("colliders");
 }
 
@@ -124,6 +111,7 @@ void Simulation::run_step(int step, FrameReport& report) {
         const Stopwatch filtering;
         if (auto* opencl = std::get_if<OpenClFilter>(&filter_)) stats = opencl->filter(cloth_);
         if (auto* reference = std::get_if<ReferenceFilter>(&filter_)) stats = reference->filter(cloth_);
+        if (auto* custom = std::get_if<CustomFilter>(&filter_)) stats = custom->filter(cloth_);
         const double seconds = filtering.seconds();
         report.filter_seconds += seconds;
         report.step_seconds += seconds;
@@ -131,7 +119,7 @@ void Simulation::run_step(int step, FrameReport& report) {
         report.cg_iterations += stats->cg_iterations;
         report.status = std::max(report.status, stats->status);
     }
-    measure_areas(report, stats);
+    measure_areas(report, std::holds_alternative<CustomFilter>(filter_) ? std::nullopt : stats);
     if (stats && stats->status == Status::diverged) {
         return break_down(step, "strain_limiting", "the filter met or made a number that is not finite", report);
     }

@@ -46,6 +46,13 @@ void WholeFile::check() const {
     if (!stream_) throw InputError(place_.string() + ": writing failed, is the disk full?");
 }
 
+void check_file_place(const std::filesystem::path& file) {
+    if (!file.parent_path().empty() && !std::filesystem::is_directory(file.parent_path())) {
+        throw InputError(file.string() + ": no such folder, expected one that the file can be written to");
+    }
+    WholeFile probe(file);  // not committed: nothing stays
+}
+
 void make_writable_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);

@@ -34,6 +34,10 @@ private:
     std::ofstream stream_;
 };
 
+/// What cannot be written should be known before the work, not after it. Throws InputError where no file can be made
+/// at `file`.
+void check_file_place(const std::filesystem::path& file);
+
 /// Makes the folder and what it lies in. Throws InputError where that fails or where no file can be made in it.
 void make_writable_folder(const std::filesystem::path& folder);
 

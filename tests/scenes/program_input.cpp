@@ -27,7 +27,7 @@ const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 }  // namespace
 
 TEST_CASE("wrong usage is refused in one line") {
-    check_refused("", "no command, expected run, devices or validate");
+    check_refused("", "no command, expected run, devices, validate or tune");
     check_refused("fly", "fly");
     check_refused("run", "SCENE is required");
     check_refused("run " + scene_path("curtain.json") + " --backend cuda", "--backend");

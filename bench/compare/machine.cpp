@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "compare/machine.hpp"
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+namespace apsl::compare {
+namespace {
+
+std::string output_of(const char* command) {
+    struct Close {
+        void operator()(FILE* pipe) const { pclose(pipe); }
+    };
+    const std::unique_ptr<FILE, Close> pipe(popen(command, "r"));
+    std::string output;
+    std::array<char, 256> line{};
+    while (pipe && std::fgets(line.data(), static_cast<int>(line.size()), pipe.get()) != nullptr) output += line.data();
+    while (!output.empty() && output.back() == '\n') output.pop_back();
+    return output;
+}
+
+}  // namespace
+
+std::string commit() {
+    const std::string description =
+        output_of("git -C '" APSL_SOURCE_DIRECTORY "' describe --always --abbrev=12 --dirty --exclude='*' 2>/dev/null");
+    return description.empty() ? "unknown" : description;
+}
+
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    }
+    return "unknown processor";
+}
+
+}  // namespace apsl::compare

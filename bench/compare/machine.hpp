@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace apsl::compare {
+
+/// The commit the sources stand at, "-dirty" behind it where files differ; "unknown" away from them.
+std::string commit();
+
+/// As the operating system names it.
+std::string processor_name();
+
+}  // namespace apsl::compare

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "compare/measured_run.hpp"
+
+#include "compare/direct_filter.hpp"
+#include "compare/rival_filter.hpp"
+#include "run/input_error.hpp"
+#include "run/interruption.hpp"
+#include "run/parse_scene.hpp"
+#include "run/scene_springs.hpp"
+#include "run/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace apsl::compare {
+namespace {
+
+scenes::FilterStage make_filter(const PlannedRun& run, const RunConditions& conditions, const scenes::Scene& scene,
+                                const scenes::ClothState& cloth) {
+    switch (run.contender->kind) {
+        case ContenderKind::none:
+        case ContenderKind::springs:
+            return std::monostate{};
+        case ContenderKind::ours:
+            return scenes::make_filter_stage(scene, cloth, scenes::Backend::opencl, conditions.device,
+                                             conditions.profile);
+        case ContenderKind::direct:
+            return make_direct_filter(cloth, scene.strain_limiting.value());
+        case ContenderKind::rival:
+            break;
+    }
+    std::vector<methods::Knob> knobs;
+    for (const ContenderKnob& knob : run.contender->knobs) {
+        knobs.push_back({knob.name, run.prepared.knobs.at(knob.name).get<double>()});
+    }
+    return make_rival_filter(*run.contender->rival, knobs, cloth, scene.time_step);
+}
+
+std::string device_name(const scenes::FilterStage& filter) {
+    if (const auto* opencl = std::get_if<scenes::OpenClFilter>(&filter)) return opencl->device_name();
+    if (const auto* custom = std::get_if<scenes::CustomFilter>(&filter)) return custom->device;
+    return "none";
+}
+
+void measure_cloth(const scenes::ClothState& cloth, int frame, const RunConditions& conditions, MeasuredRun& result) {
+    const PrincipalStretch stretch = principal_stretch(cloth);
+    result.principal_stretch.min = std::min(result.principal_stretch.min, stretch.min);
+    result.principal_stretch.max = std::max(result.principal_stretch.max, stretch.max);
+    if (conditions.converged == nullptr) return;
+    const auto expected = conditions.converged->positions.find(frame);
+    if (expected != conditions.converged->positions.end()) {
+        result.deviation.push_back({frame, deviation(cloth.positions, expected->second)});
+    }
+}
+
+}  // namespace
+
+std::optional<MeasuredRun> measure_run(const PlannedRun& run, const RunConditions& conditions) {
+    const scenes::Scene scene = scenes::parse_scene(run.prepared.document, run.scene->file);
+    scenes::SceneCloth cloth = scenes::make_scene_cloth(scene);
+    const std::vector<scenes::Spring> springs = scenes::make_scene_springs(scene, cloth.state).springs;
+    scenes::FilterStage filter = make_filter(run, conditions, scene, cloth.state);
+    MeasuredRun result;
+    result.device = device_name(filter);
+    result.vertices = cloth.state.topology->vertex_count();
+    result.triangles = cloth.state.topology->triangle_count();
+    scenes::Simulation simulation(scene, std::move(cloth), std::move(filter), false);
+
+    const auto start = std::chrono::steady_clock::now();
+    const auto time_left = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < conditions.run_seconds;
+    };
+    for (int frame = 0; frame < scene.frames && !result.breakdown && !result.timed_out; ++frame) {
+        if (scenes::interrupted()) return std::nullopt;
+        result.frames.push_back(simulation.run_frame());
+        result.breakdown = simulation.breakdown();
+        if (conditions.profile) {
+            if (auto* opencl = std::get_if<scenes::OpenClFilter>(&simulation.filter())) {
+                for (const KernelTime& kernel : opencl->kernel_times()) result.device_seconds += kernel.seconds;
+            }
+        }
+        if (!result.breakdown) measure_cloth(simulation.cloth(), frame, conditions, result);
+        if (conditions.show) conditions.show(result.frames.back());
+        result.timed_out = !result.breakdown && frame + 1 < scene.frames && !time_left();
+    }
+    result.energy = energy(simulation.cloth(), springs, scene.gravity);
+    return result;
+}
+
+}  // namespace apsl::compare

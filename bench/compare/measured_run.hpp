@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "compare/contenders.hpp"
+#include "compare/converged_solution.hpp"
+#include "compare/measures.hpp"
+#include "run/opencl_devices.hpp"
+#include "run/report.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace apsl::compare {
+
+/// One contender with one set of knobs on one scene.
+struct PlannedRun {
+    const SceneCase* scene;
+    const Contender* contender;
+    PreparedScene prepared;
+};
+
+/// How a run is made and what is looked at besides.
+struct RunConditions {
+    std::optional<scenes::OpenClDevice> device;  ///< for ContenderKind::ours
+    double run_seconds = 120.0;                  ///< no frame is begun after so long, set-up apart
+    bool profile = false;                        ///< device times: a run whose times are not to be compared
+    const ConvergedSolution* converged = nullptr;
+    std::function<void(const scenes::FrameReport&)> show;  ///< after each frame
+};
+
+struct FrameDeviation {
+    int frame;
+    Deviation deviation;
+};
+
+struct MeasuredRun {
+    std::vector<scenes::FrameReport> frames;
+    std::string device;  ///< what the limiter ran on, "none" without one
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+    PrincipalStretch principal_stretch;  ///< over all ends of frames
+    std::vector<FrameDeviation> deviation;
+    Energy energy;  ///< at the end
+    std::optional<scenes::Breakdown> breakdown;
+    bool timed_out = false;
+    double device_seconds = 0.0;  ///< all kernels, all frames; only with RunConditions::profile
+};
+
+/// None where it was interrupted. Throws InputError and Error for scenes and knobs that cannot be run.
+std::optional<MeasuredRun> measure_run(const PlannedRun& run, const RunConditions& conditions);
+
+}  // namespace apsl::compare

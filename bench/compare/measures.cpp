@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "compare/measures.hpp"
+
+#include "pipeline/geometry.hpp"
+#include "pipeline/spring_operator.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace apsl::compare {
+namespace {
+
+using scenes::vector_at;
+
+Eigen::Matrix<double, 3, 2> edges(std::span<const double> positions, const Triangle& triangle) {
+    Eigen::Matrix<double, 3, 2> columns;
+    columns.col(0) = vector_at(positions, triangle[1]) - vector_at(positions, triangle[0]);
+    columns.col(1) = vector_at(positions, triangle[2]) - vector_at(positions, triangle[0]);
+    return columns;
+}
+
+}  // namespace
+
+PrincipalStretch principal_stretch(const scenes::ClothState& cloth) {
+    PrincipalStretch range{.min = std::numeric_limits<double>::infinity(), .max = 0.0};
+    std::size_t a = 0;
+    for (const Triangle& triangle : cloth.topology->triangles()) {
+        if (!(cloth.rest_areas[a++] > 0.0)) continue;
+        const Eigen::Matrix<double, 3, 2> rest = edges(cloth.rest_positions, triangle);
+        const Eigen::Vector3d u = rest.col(0).normalized();
+        const Eigen::Vector3d v = (rest.col(1) - rest.col(1).dot(u) * u).normalized();
+        Eigen::Matrix2d in_plane;
+        in_plane << rest.col(0).norm(), rest.col(1).dot(u), 0.0, rest.col(1).dot(v);
+        const Eigen::Matrix<double, 3, 2> F = edges(cloth.positions, triangle) * in_plane.inverse();
+        // Eigenvalues of FᵀF = [p q; q r]: the squares of the singular values.
+        const double p = F.col(0).squaredNorm();
+        const double q = F.col(0).dot(F.col(1));
+        const double r = F.col(1).squaredNorm();
+        const double middle = 0.5 * (p + r);
+        const double half_width = std::hypot(0.5 * (p - r), q);
+        range.max = std::max(range.max, std::sqrt(middle + half_width));
+        range.min = std::min(range.min, std::sqrt(std::max(middle - half_width, 0.0)));
+    }
+    return range.max < range.min ? PrincipalStretch{} : range;
+}
+
+Energy energy(const scenes::ClothState& cloth, std::span<const scenes::Spring> springs,
+              const std::array<double, 3>& gravity) {
+    Energy sum;
+    const Eigen::Vector3d g(gravity[0], gravity[1], gravity[2]);
+    for (std::size_t v = 0; v < cloth.masses.size(); ++v) {
+        if (cloth.inverse_masses[v] == 0.0) continue;
+        const Eigen::Vector3d moved = vector_at(std::span<const double>(cloth.positions), v) -
+                                      vector_at(std::span<const double>(cloth.rest_positions), v);
+        sum.kinetic += 0.5 * cloth.masses[v] * vector_at(std::span<const double>(cloth.velocities), v).squaredNorm();
+        sum.gravity -= cloth.masses[v] * g.dot(moved);
+    }
+    sum.springs = scenes::spring_energy(springs, cloth.positions);
+    return sum;
+}
+
+Deviation deviation(std::span<const double> positions, std::span<const double> expected) {
+    Deviation result;
+    double squares = 0.0;
+    const std::size_t vertices = positions.size() / 3;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        const double square = (vector_at(positions, v) - vector_at(expected, v)).squaredNorm();
+        squares += square;
+        result.max = std::max(result.max, std::sqrt(square));
+    }
+    result.rms = std::sqrt(squares / static_cast<double>(vertices));
+    return result;
+}
+
+Quartiles quartiles(std::vector<double> samples) {
+    if (samples.empty()) return {};
+    std::sort(samples.begin(), samples.end());
+    const auto quantile = [&](double fraction) {
+        const double place = fraction * static_cast<double>(samples.size() - 1);
+        const auto below = static_cast<std::size_t>(place);
+        const std::size_t above = std::min(below + 1, samples.size() - 1);
+        const double weight = place - static_cast<double>(below);
+        return (1.0 - weight) * samples[below] + weight * samples[above];
+    };
+    return {quantile(0.25), quantile(0.5), quantile(0.75)};
+}
+
+}  // namespace apsl::compare

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "pipeline/cloth_state.hpp"
+#include "pipeline/springs.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace apsl::compare {
+
+/// Least and greatest singular value over all triangles of the 3×2 deformation gradient F = [x₁−x₀ x₂−x₀] Dₘ⁻¹, with Dₘ
+/// the same edges at rest in the triangle's own plane. 1 is neither stretched nor compressed. Triangles without a rest
+/// area are not counted.
+struct PrincipalStretch {
+    double min = 1.0;
+    double max = 1.0;
+};
+PrincipalStretch principal_stretch(const scenes::ClothState& cloth);
+
+/// J. Free vertices alone, gravity counted from the rest positions.
+struct Energy {
+    double kinetic = 0.0;
+    double gravity = 0.0;
+    double springs = 0.0;
+};
+Energy energy(const scenes::ClothState& cloth, std::span<const scenes::Spring> springs,
+              const std::array<double, 3>& gravity);
+
+/// Distance of each vertex from where it should be: m.
+struct Deviation {
+    double rms = 0.0;
+    double max = 0.0;
+};
+/// Of positions from others of the same size: m, [3V], V ≥ 1.
+Deviation deviation(std::span<const double> positions, std::span<const double> expected);
+
+/// First quartile, median and third quartile, interpolated; zeros where there are no samples.
+struct Quartiles {
+    double first = 0.0;
+    double median = 0.0;
+    double third = 0.0;
+};
+Quartiles quartiles(std::vector<double> samples);
+
+}  // namespace apsl::compare

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "compare/contenders.hpp"
+#include "run/input_error.hpp"
+#include "run/override_scene.hpp"
+
+#include <charconv>
+#include <cmath>
+
+namespace apsl::compare {
+namespace {
+
+using scenes::InputError;
+
+// Whole numbers as such: a scene has counts, and 10.0 is not how anyone writes one.
+nlohmann::json tidy(const nlohmann::json& value) {
+    if (!value.is_number_float()) return value;
+    const double number = value.get<double>();
+    if (number == std::floor(number) && std::abs(number) < 1e15) return static_cast<std::int64_t>(number);
+    return value;
+}
+
+void set(nlohmann::json& document, const std::string& path, const nlohmann::json& value) {
+    scenes::override_scene(document, path + "=" + value.dump());
+}
+
+// 1.2f as 1.2.
+double shortest(float value) {
+    char text[32];
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    double number = 0.0;
+    std::from_chars(text, end, number);
+    return number;
+}
+
+// A frame keeps its length.
+void set_steps_per_frame(nlohmann::json& document, std::int64_t steps) {
+    const scenes::Scene defaults;
+    const double time_step = document.value("time_step", defaults.time_step);
+    const auto before = document.value("steps_per_frame", std::int64_t{defaults.steps_per_frame});
+    if (steps == before) return;
+    document["time_step"] = time_step * static_cast<double>(before) / static_cast<double>(steps);
+    document["steps_per_frame"] = steps;
+}
+
+void fill_in_limiting(nlohmann::json& document) {
+    const Parameters standard;
+    nlohmann::json& limiting = document["strain_limiting"];
+    if (limiting.is_null()) limiting = nlohmann::json::object();
+    const auto fill_in = [&](const char* key, const nlohmann::json& value) {
+        if (limiting.is_object() && !limiting.contains(key)) limiting[key] = value;
+    };
+    fill_in("sub_steps", standard.sub_steps);
+    fill_in("regularization", shortest(standard.regularization));
+    fill_in("tolerance", shortest(standard.tolerance));
+    fill_in("max_iterations", standard.max_iterations);
+}
+
+void stiffen_springs(nlohmann::json& document, const std::string& file, double factor) {
+    if (!document.contains("integrator") || !document["integrator"].contains("implicit_springs")) {
+        throw InputError(file + ": springs: expected a scene whose integrator is implicit_springs");
+    }
+    nlohmann::json& springs = document["integrator"]["implicit_springs"];
+    const scenes::ImplicitSpringsIntegrator standard;
+    springs["stretch_stiffness"] = factor * springs.value("stretch_stiffness", standard.stretch_stiffness);
+}
+
+nlohmann::json value_at(const nlohmann::json& document, const std::string& path) {
+    const nlohmann::json* place = &document;
+    for (std::size_t first = 0; first < path.size();) {
+        const std::size_t end = std::min(path.find('.', first), path.size());
+        const auto found = place->find(path.substr(first, end - first));
+        if (found == place->end()) return nullptr;
+        place = &*found;
+        first = end + 1;
+    }
+    return *place;
+}
+
+}  // namespace
+
+PreparedScene prepare_scene(const Contender& contender, const nlohmann::json& document, const std::string& file,
+                            const KnobValues& knobs) {
+    check_knobs(contender, knobs);
+    PreparedScene prepared{.document = document, .knobs = KnobValues::object()};
+    const bool ours = contender.kind == ContenderKind::ours || contender.kind == ContenderKind::direct;
+    if (ours) {
+        fill_in_limiting(prepared.document);
+        for (const auto& [path, value] : contender.settings) set(prepared.document, path, value);
+    } else {
+        prepared.document.erase("strain_limiting");
+    }
+    // Those given first to last, and before them the standard ones.
+    KnobValues values = KnobValues::object();
+    for (const ContenderKnob& knob : contender.knobs) {
+        if (knob.standard) values[knob.name] = *knob.standard;
+    }
+    for (const auto& [name, value] : knobs.items()) values[name] = value;
+    for (const auto& [name, given] : values.items()) {
+        const nlohmann::json value = tidy(given);
+        if (name == "steps_per_frame") {
+            if (!value.is_number_integer()) throw InputError(contender.name + ": steps_per_frame must be whole");
+            set_steps_per_frame(prepared.document, value.get<std::int64_t>());
+        } else if (contender.kind == ContenderKind::springs) {
+            stiffen_springs(prepared.document, file, value.get<double>());
+        } else if (ours) {
+            set(prepared.document, name, value);
+        }
+        prepared.knobs[name] = value;
+    }
+    for (const ContenderKnob& knob : contender.knobs) {
+        if (!prepared.knobs.contains(knob.name)) prepared.knobs[knob.name] = value_at(prepared.document, knob.name);
+    }
+    prepared.knobs["steps_per_frame"] = prepared.document.value("steps_per_frame", 1);
+    return prepared;
+}
+
+}  // namespace apsl::compare

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "compare/results_file.hpp"
+
+#include "compare/machine.hpp"
+#include "run/input_error.hpp"
+#include "run/whole_file.hpp"
+
+#include <fstream>
+#include <thread>
+#include <utility>
+
+namespace apsl::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using scenes::InputError;
+
+Json quartiles_json(const std::vector<double>& samples) {
+    const Quartiles q = quartiles(samples);
+    return {{"first_quartile", q.first}, {"median", q.median}, {"third_quartile", q.third}};
+}
+
+std::vector<double> seconds(const MeasuredRun& run, double scenes::FrameReport::* field, double less = 0.0) {
+    std::vector<double> samples;
+    for (const scenes::FrameReport& frame : run.frames) samples.push_back(frame.*field - less);
+    return samples;
+}
+
+Json stopped_json(const MeasuredRun& run) {
+    if (run.breakdown) {
+        return {{"frame", run.breakdown->frame},
+                {"step", run.breakdown->step},
+                {"stage", run.breakdown->stage},
+                {"what", run.breakdown->what}};
+    }
+    if (run.timed_out) {
+        return {{"frame", run.frames.back().frame}, {"what", "no time left for another frame"}};
+    }
+    return nullptr;
+}
+
+Json frames_json(const std::vector<FrameDeviation>& deviation) {
+    Json frames = Json::array();
+    for (const FrameDeviation& at : deviation) {
+        frames.push_back({{"frame", at.frame}, {"rms", at.deviation.rms}, {"max", at.deviation.max}});
+    }
+    return frames;
+}
+
+Json deviation_json(const MeasuredRun& run, const std::optional<DeviationPlan>& plan, double converged_area_change) {
+    if (!plan) return nullptr;
+    return {{"converged", to_json(plan->settings)},
+            {"converged_max_area_change", converged_area_change},
+            {"asked_frames", plan->frames},
+            {"frames", frames_json(run.deviation)}};
+}
+
+// Equal whatever the order of their keys.
+bool same(const Json& a, const Json& b) {
+    return nlohmann::json(a) == nlohmann::json(b);
+}
+
+Json machine_json(const std::optional<scenes::OpenClDevice>& device) {
+    Json machine{
+        {"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()}, {"opencl_device", nullptr}};
+    if (device) {
+        machine["opencl_device"] = {{"name", device->name}, {"platform", device->platform}, {"driver", device->driver}};
+    }
+    return machine;
+}
+
+Json read_results(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    Json stored = Json::parse(stream, nullptr, false);
+    const bool ours = stored.is_object() && stored.contains("machine") && stored["machine"].is_object() &&
+                      stored.contains("build_type") && stored.contains("scenes") && stored["scenes"].is_array() &&
+                      stored.contains("runs") && stored["runs"].is_array();
+    if (!ours) throw InputError(file.string() + ": exists and holds no results of apsl compare; choose another --out");
+    return stored;
+}
+
+}  // namespace
+
+ResultsFile::ResultsFile(std::filesystem::path file, const std::optional<scenes::OpenClDevice>& device)
+    : file_(std::move(file)), commit_(commit()) {
+    scenes::check_file_place(file_);
+    const Json machine = machine_json(device);
+    document_ = {
+        {"machine", machine}, {"build_type", APSL_BUILD_TYPE}, {"scenes", Json::array()}, {"runs", Json::array()}};
+    if (!std::filesystem::exists(file_)) return;
+    Json stored = read_results(file_);
+    const Json earlier = stored["machine"];
+    const Json other = earlier.value("opencl_device", Json());
+    if (earlier.value("processor", "") != machine["processor"] || earlier.value("cores", 0u) != machine["cores"] ||
+        stored["build_type"] != APSL_BUILD_TYPE ||
+        (device && !other.is_null() && !same(other, machine["opencl_device"]))) {
+        throw InputError(file_.string() + ": holds results of another machine, build or device; choose another --out");
+    }
+    if (device) stored["machine"]["opencl_device"] = machine["opencl_device"];
+    document_ = std::move(stored);
+}
+
+void ResultsFile::add_scene(const SceneCase& scene) {
+    for (const Json& known : document_["scenes"]) {
+        if (known.value("name", "") != scene.name) continue;
+        if (!same(known.value("document", Json()), Json(scene.document)) || known.value("file", "") != scene.file) {
+            throw InputError(file_.string() + ": holds a scene " + scene.name +
+                             " with other settings; choose another --out or, in a study, another name");
+        }
+        return;
+    }
+    document_["scenes"].push_back({{"name", scene.name}, {"file", scene.file}, {"document", scene.document}});
+}
+
+const Json* ResultsFile::find(const std::string& scene, const std::string& method, const KnobValues& knobs) const {
+    for (const Json& run : document_["runs"]) {
+        if (run.value("scene", "") == scene && run.value("method", "") == method &&
+            same(run.value("knobs", Json()), knobs)) {
+            return &run;
+        }
+    }
+    return nullptr;
+}
+
+bool ResultsFile::has(const PlannedRun& run, const RunConditions& conditions,
+                      const std::optional<DeviationPlan>& deviation) const {
+    const Json* found = find(run.scene->name, run.contender->name, run.prepared.knobs);
+    if (found == nullptr) return false;
+    if (found->value("status", "") == "timed_out" && found->value("run_seconds", 0.0) < conditions.run_seconds) {
+        return false;
+    }
+    if (conditions.profile && run.contender->kind == ContenderKind::ours &&
+        found->value("device_seconds_per_frame", Json()).is_null()) {
+        return false;
+    }
+    if (!deviation) return true;
+    const Json stored = found->value("deviation", Json());
+    return stored.is_object() && same(stored.value("converged", Json()), to_json(deviation->settings)) &&
+           stored.value("asked_frames", Json()) == Json(deviation->frames);
+}
+
+double ResultsFile::integrator_seconds_without_limiter(const PlannedRun& run) const {
+    const Json* none = find(run.scene->name, "none", {{"steps_per_frame", run.prepared.knobs["steps_per_frame"]}});
+    return none == nullptr ? 0.0 : none->at("integrator_seconds_per_frame").at("median").get<double>();
+}
+
+Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const RunConditions& conditions,
+                      const std::optional<DeviationPlan>& deviation, std::optional<double> device_seconds) {
+    const scenes::RunSummary summary = scenes::summarize(measured.frames);
+    // The limiter of stiff springs is their solve, as far as it takes longer than that of the soft ones.
+    const std::vector<double> limiter_seconds =
+        run.contender->kind == ContenderKind::springs
+            ? seconds(measured, &scenes::FrameReport::integrator_seconds, integrator_seconds_without_limiter(run))
+            : seconds(measured, &scenes::FrameReport::filter_seconds);
+    Json entry{
+        {"scene", run.scene->name},
+        {"method", run.contender->name},
+        {"title", run.contender->title},
+        {"citation", run.contender->citation},
+        {"knobs", run.prepared.knobs},
+        {"commit", commit_},
+        {"device", measured.device},
+        {"vertices", measured.vertices},
+        {"triangles", measured.triangles},
+        {"status", measured.timed_out ? "timed_out" : scenes::status_name(summary.status)},
+        {"stopped", stopped_json(measured)},
+        {"run_seconds", conditions.run_seconds},
+        {"frames", measured.frames.size()},
+        {"limiter_seconds_per_frame", quartiles_json(limiter_seconds)},
+        {"device_seconds_per_frame", device_seconds ? Json(*device_seconds) : Json()},
+        {"integrator_seconds_per_frame", quartiles_json(seconds(measured, &scenes::FrameReport::integrator_seconds))},
+        {"max_area_change", summary.max_area_change},
+        {"mean_max_area_change", summary.mean_max_area_change},
+        {"rms_area_change", summary.rms_area_change},
+        {"edge_stretch", {{"min", summary.min_edge_stretch}, {"max", summary.max_edge_stretch}}},
+        {"principal_stretch", {{"min", measured.principal_stretch.min}, {"max", measured.principal_stretch.max}}},
+        {"solves", summary.solves},
+        {"cg_iterations_per_solve", summary.cg_iterations_per_solve},
+        {"deviation", deviation_json(measured, deviation,
+                                     conditions.converged != nullptr ? conditions.converged->max_area_change : 0.0)},
+        {"energy",
+         {{"kinetic", measured.energy.kinetic},
+          {"gravity", measured.energy.gravity},
+          {"springs", measured.energy.springs}}}};
+    for (Json& earlier : document_["runs"]) {
+        if (&earlier == find(run.scene->name, run.contender->name, run.prepared.knobs)) return earlier = entry;
+    }
+    document_["runs"].push_back(entry);
+    return entry;
+}
+
+void ResultsFile::write() const {
+    scenes::WholeFile output(file_);
+    output.write(document_.dump(1));
+    output.write("\n");
+    output.commit();
+}
+
+}  // namespace apsl::compare

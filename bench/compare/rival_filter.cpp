@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "compare/rival_filter.hpp"
+
+#include "pipeline/geometry.hpp"
+
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace apsl::compare {
+namespace {
+
+methods::Cloth as_method_cloth(const scenes::ClothState& cloth, double time_step) {
+    methods::Cloth copy{.topology = cloth.topology,
+                        .rest_positions = {},
+                        .rest_areas = cloth.rest_areas,
+                        .inverse_masses = cloth.inverse_masses,
+                        .time_step = time_step};
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
+        copy.rest_positions.emplace_back(scenes::vector_at(std::span<const double>(cloth.rest_positions), v));
+    }
+    return copy;
+}
+
+bool all_finite(std::span<const Eigen::Vector3f> positions) {
+    for (const Eigen::Vector3f& position : positions) {
+        if (!position.allFinite()) return false;
+    }
+    return true;
+}
+
+struct RivalFilter {
+    std::shared_ptr<methods::Method> method;  // shared, for std::function copies what it holds
+    double time_step;
+    std::vector<Eigen::Vector3f> predicted, projected;
+
+    Stats operator()(scenes::ClothState& cloth) {
+        Stats stats{};
+        stats.status = Status::diverged;
+        predicted.resize(cloth.inverse_masses.size());
+        for (std::size_t v = 0; v < predicted.size(); ++v) {
+            predicted[v] = (scenes::vector_at(std::span<const double>(cloth.positions), v) +
+                            time_step * scenes::vector_at(std::span<const double>(cloth.velocities), v))
+                               .cast<float>();
+        }
+        if (!all_finite(predicted)) return stats;
+        projected = predicted;
+        method->project(projected);
+        if (!all_finite(projected)) return stats;
+        for (std::size_t v = 0; v < predicted.size(); ++v) {
+            if (cloth.inverse_masses[v] == 0.0) continue;
+            // Only the correction goes into the 64-bit velocities, not the rounding of the rest to 32 bits.
+            scenes::vector_at(std::span<double>(cloth.velocities), v) +=
+                (projected[v].cast<double>() - predicted[v].cast<double>()) / time_step;
+        }
+        stats.status = Status::ok;
+        return stats;
+    }
+};
+
+}  // namespace
+
+scenes::CustomFilter make_rival_filter(const methods::MethodInfo& method, std::span<const methods::Knob> knobs,
+                                       const scenes::ClothState& cloth, double time_step) {
+    std::shared_ptr<methods::Method> made = methods::make_method(method.name, as_method_cloth(cloth, time_step), knobs);
+    return {.name = method.name,
+            .device = "this processor",
+            .filter = RivalFilter{.method = std::move(made), .time_step = time_step, .predicted = {}, .projected = {}}};
+}
+
+}  // namespace apsl::compare

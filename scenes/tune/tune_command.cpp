@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "tune/tune_command.hpp"
+
+#include "run/commands.hpp"
+#include "run/interruption.hpp"
+#include "run/parse_scene.hpp"
+#include "run/whole_file.hpp"
+#include "tune/scene_text.hpp"
+#include "tune/tuning_search.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace apsl::scenes {
+namespace {
+
+using Document = nlohmann::ordered_json;
+
+const auto kToTheEnd = [](const Trial&) { return false; };
+
+// What was tried, a line each as it is done.
+class Table {
+public:
+    explicit Table(std::FILE* stream) : stream_(stream) {
+        std::fprintf(stream_,
+                     "steps  sub-steps  regularization  tolerance  iterations  frames  area change  "
+                     "limiter ms  frame ms\n");
+    }
+
+    void add(const Trial& trial, const TuningGoal& goal) {
+        const LimiterSettings& s = trial.settings;
+        std::fprintf(stream_, "%5d  %9d  %14.4g  %9.3g  %10d  %6d  %9.3f %%  %10.3f  %8.3f  %s\n", s.steps_per_frame,
+                     s.sub_steps, s.regularization, s.tolerance, s.max_iterations, trial.frames,
+                     100.0 * trial.max_area_change, 1e3 * trial.limiter_seconds, 1e3 * trial.seconds(),
+                     verdict(trial, goal));
+    }
+
+    void add_without_limiter(const Trial& trial, const TuningGoal& goal) {
+        std::fprintf(stream_, "%5d  %-48s %7d  %9.3f %%  %10s  %8.3f  %s\n", trial.settings.steps_per_frame,
+                     "(no strain limiting)", trial.frames, 100.0 * trial.max_area_change, "-", 1e3 * trial.seconds(),
+                     verdict(trial, goal));
+    }
+
+private:
+    static const char* verdict(const Trial& trial, const TuningGoal& goal) {
+        if (trial.cut_short) return "given up";
+        if (!std::isfinite(trial.max_area_change)) return "diverged";
+        if (!goal.within_budget(trial)) return "beyond the budget";
+        return goal.meets_target(trial) ? "meets the target" : "misses";
+    }
+
+    std::FILE* stream_;
+};
+
+struct Tuning {
+    Document document;
+    std::string file;
+    Scene scene;  // what the document says
+    TuningGoal goal;
+    std::optional<OpenClDevice> device;
+    std::FILE* stream;
+};
+
+std::optional<Trial> whole_run(const Tuning& tuning, const Document& document) {
+    return run_trial(document, tuning.file, tuning.scene.frames, tuning.device, kToTheEnd);
+}
+
+// Whether the target holds when bending is left out. None: interrupted.
+std::optional<bool> holds_without_bending(const Tuning& tuning, Document document) {
+    document["integrator"]["implicit_springs"]["bend_stiffness"] = 0;
+    const std::optional<Trial> trial = whole_run(tuning, document);
+    if (!trial) return std::nullopt;
+    return tuning.goal.meets_target(*trial);
+}
+
+// What the tuned scene could do without, by trying: a line each. False where it was interrupted.
+bool tell_what_can_go(const Tuning& tuning, const Document& tuned, const Trial& best, bool limiter_needed) {
+    if (!limiter_needed) {
+        std::fprintf(tuning.stream, "could go: strain_limiting, the springs alone meet the target\n");
+    }
+    const auto* springs = std::get_if<ImplicitSpringsIntegrator>(&tuning.scene.integrator);
+    if (springs != nullptr && springs->bend_stiffness > 0.0) {
+        const std::optional<bool> holds = holds_without_bending(tuning, tuned);
+        if (!holds) return false;
+        if (*holds) {
+            std::fprintf(tuning.stream,
+                         "could go: bending (bend_stiffness 0), as far as the target is concerned; "
+                         "folds will look different\n");
+        }
+    }
+    if (!tuning.scene.colliders.empty()) {
+        Document without = tuned;
+        without.erase("colliders");
+        const std::optional<Trial> trial = whole_run(tuning, without);
+        if (!trial) return false;
+        // Bit for bit the same motion: a single contact would show.
+        if (trial->positions == best.positions) {
+            std::fprintf(tuning.stream, "could go: colliders, the cloth never touches them\n");
+        }
+    }
+    return true;
+}
+
+// A mesh file is named relative to its scene, which now lies elsewhere.
+void move_mesh_file(Document& document, const std::filesystem::path& from, const std::filesystem::path& to) {
+    if (!document["mesh"].contains("file")) return;
+    const std::filesystem::path file = document["mesh"]["file"].get<std::string>();
+    if (file.is_absolute()) return;
+    const std::filesystem::path folder = std::filesystem::absolute(to).parent_path();
+    const std::filesystem::path absolute = std::filesystem::absolute(from.parent_path() / file);
+    document["mesh"]["file"] = absolute.lexically_proximate(folder).generic_string();
+}
+
+void write_scene(Document document, const TuneOptions& options) {
+    if (!options.out) {
+        std::fputs(scene_text(document).c_str(), stdout);
+        return;
+    }
+    move_mesh_file(document, options.scene, *options.out);
+    WholeFile output(*options.out);
+    output.write(scene_text(document));
+    output.commit();
+}
+
+Tuning set_up(const TuneOptions& options) {
+    Tuning tuning;
+    tuning.file = options.scene.string();
+    tuning.document = read_scene_document(options.scene, options.overrides);
+    tuning.scene = parse_scene(nlohmann::json(tuning.document), tuning.file);
+    if (options.frames) tuning.scene.frames = *options.frames;
+    tuning.goal.target = options.target;
+    if (options.budget_ms) tuning.goal.budget_seconds = 1e-3 * *options.budget_ms;
+    tuning.device = choose_opencl_device(options.device);
+    tuning.stream = options.out ? stdout : stderr;
+    return tuning;
+}
+
+int interruption() {
+    std::fprintf(stderr, "interrupted; no scene is written\n");
+    return kExitInterrupted;
+}
+
+}  // namespace
+
+int tune_command(const TuneOptions& options) {
+    const Tuning tuning = set_up(options);
+    if (options.out) check_file_place(*options.out);
+    note_interruptions();
+    Table table(tuning.stream);
+
+    Document unlimited = tuning.document;
+    unlimited.erase("strain_limiting");
+    const std::optional<Trial> without_limiter = whole_run(tuning, unlimited);
+    if (!without_limiter) return interruption();
+    table.add_without_limiter(*without_limiter, tuning.goal);
+
+    const bool one_regularization =
+        !tuning.scene.strain_limiting || tuning.scene.strain_limiting->regularization.empty();
+    const std::optional<Trial> best =
+        search_settings(tuning.goal, limiter_settings(tuning.document), one_regularization, tuning.scene.frames,
+                        [&](const LimiterSettings& settings, int frames, const auto& enough) {
+                            auto trial = run_trial(with_settings(tuning.document, settings), tuning.file, frames,
+                                                   tuning.device, enough);
+                            if (trial) table.add(*trial, tuning.goal);
+                            return trial;
+                        });
+    if (!best) return interruption();
+    const Document tuned = with_settings(tuning.document, best->settings);
+    std::fprintf(tuning.stream, "best, over %d frames:\n", best->frames);
+    table.add(*best, tuning.goal);
+    if (!tell_what_can_go(tuning, tuned, *best, !tuning.goal.meets_target(*without_limiter))) return interruption();
+    write_scene(tuned, options);
+    if (tuning.goal.meets_target(*best) && tuning.goal.within_budget(*best)) return kExitDone;
+    std::fprintf(stderr, "error: %s: no settings tried meet %.3g %% area change%s; the best are written\n",
+                 tuning.file.c_str(), 100.0 * options.target, options.budget_ms ? " within the budget" : "");
+    return kExitBrokeDown;
+}
+
+}  // namespace apsl::scenes

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "tune/tuning_trial.hpp"
+
+#include <functional>
+#include <optional>
+
+namespace apsl::scenes {
+
+/// What the settings are to meet.
+struct TuningGoal {
+    double target = 0.01;                  ///< greatest |A − A⁰| / A⁰ over triangles and frames
+    std::optional<double> budget_seconds;  ///< of the limiter, a frame
+
+    bool meets_target(const Trial& trial) const { return trial.max_area_change <= target; }
+    bool within_budget(const Trial& trial) const { return !budget_seconds || trial.limiter_seconds <= *budget_seconds; }
+    /// Of two trials over as many frames: within the budget before beyond it, met before missed, and then the cheaper
+    /// of two that meet the target, the closer of two that do not.
+    bool better(const Trial& trial, const Trial& other) const;
+};
+
+/// A trial of these settings over so many frames, cut short where `enough` says so; none where it was interrupted.
+using TrialRun = std::function<std::optional<Trial>(const LimiterSettings& settings, int frames,
+                                                    const std::function<bool(const Trial&)>& enough)>;
+
+/// Searches over the first quarter of the frames (30 at least) for the best settings, then confirms the best on all of
+/// them; what fails there makes place for the next best. Starts at `given`, the scene's own settings.
+/// `tune_regularization`: false keeps the regularization. None where a trial was interrupted.
+std::optional<Trial> search_settings(const TuningGoal& goal, const LimiterSettings& given, bool tune_regularization,
+                                     int frames, const TrialRun& run);
+
+}  // namespace apsl::scenes

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "tune/tuning_trial.hpp"
+
+#include "run/interruption.hpp"
+#include "run/parse_scene.hpp"
+#include "run/simulation.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace apsl::scenes {
+namespace {
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// 1.2f as 1.2.
+double shortest(float value) {
+    char text[32];
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    double number = 0.0;
+    std::from_chars(text, end, number);
+    return number;
+}
+
+}  // namespace
+
+LimiterSettings limiter_settings(const nlohmann::ordered_json& document) {
+    const Parameters standard;
+    const Scene scene;
+    const nlohmann::ordered_json limiting = document.value("strain_limiting", nlohmann::ordered_json::object());
+    LimiterSettings settings;
+    settings.steps_per_frame = document.value("steps_per_frame", scene.steps_per_frame);
+    settings.sub_steps = limiting.value("sub_steps", standard.sub_steps);
+    settings.tolerance = limiting.value("tolerance", shortest(standard.tolerance));
+    settings.max_iterations = limiting.value("max_iterations", standard.max_iterations);
+    settings.regularization = shortest(standard.regularization);
+    if (limiting.contains("regularization") && limiting["regularization"].is_number()) {
+        settings.regularization = limiting["regularization"].get<double>();
+    }
+    return settings;
+}
+
+nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const LimiterSettings& settings) {
+    const LimiterSettings before = limiter_settings(document);
+    if (settings.steps_per_frame != before.steps_per_frame) {
+        const Scene standard;
+        document["time_step"] =
+            document.value("time_step", standard.time_step) * before.steps_per_frame / settings.steps_per_frame;
+        document["steps_per_frame"] = settings.steps_per_frame;
+    }
+    nlohmann::ordered_json& limiting = document["strain_limiting"];
+    if (limiting.is_null()) limiting = nlohmann::ordered_json::object();
+    limiting["sub_steps"] = settings.sub_steps;
+    if (!limiting.contains("regularization") || limiting["regularization"].is_number()) {
+        limiting["regularization"] = settings.regularization;
+    }
+    limiting["tolerance"] = settings.tolerance;
+    limiting["max_iterations"] = settings.max_iterations;
+    return document;
+}
+
+std::optional<Trial> run_trial(const nlohmann::ordered_json& document, const std::string& file, int frames,
+                               const std::optional<OpenClDevice>& device,
+                               const std::function<bool(const Trial&)>& enough) {
+    const Scene scene = parse_scene(nlohmann::json(document), file);
+    SceneCloth cloth = make_scene_cloth(scene);
+    FilterStage filter = make_filter_stage(scene, cloth.state, Backend::opencl, device, false);
+    Simulation simulation(scene, std::move(cloth), std::move(filter), false);
+    Trial trial{.settings = limiter_settings(document)};
+    std::vector<double> limiter_seconds;
+    std::vector<double> rest_seconds;
+    while (trial.frames < frames && !trial.cut_short) {
+        if (interrupted()) return std::nullopt;
+        const FrameReport frame = simulation.run_frame();
+        ++trial.frames;
+        limiter_seconds.push_back(frame.filter_seconds);
+        rest_seconds.push_back(frame.step_seconds - frame.filter_seconds);
+        trial.limiter_seconds = median(limiter_seconds);
+        trial.rest_seconds = median(rest_seconds);
+        trial.max_area_change = std::max(trial.max_area_change, frame.max_area_change);
+        if (simulation.breakdown()) {
+            trial.max_area_change = std::numeric_limits<double>::infinity();
+            break;
+        }
+        trial.cut_short = trial.frames < frames && enough(trial);
+    }
+    trial.positions = simulation.cloth().positions;
+    return trial;
+}
+
+}  // namespace apsl::scenes

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "run/opencl_devices.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace apsl::scenes {
+
+/// What tuning may change of a scene.
+struct LimiterSettings {
+    int steps_per_frame = 1;  ///< a frame keeps its length
+    int sub_steps = 10;
+    double regularization = 1.2;  ///< without meaning where the scene has one for each triangle
+    double tolerance = 0.1;
+    int max_iterations = 50;
+
+    bool operator==(const LimiterSettings&) const = default;
+};
+
+/// The settings a scene has, standard ones where it names none.
+LimiterSettings limiter_settings(const nlohmann::ordered_json& document);
+
+/// The scene with these settings, all else in the order it was in.
+nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const LimiterSettings& settings);
+
+/// What a run of a scene came to.
+struct Trial {
+    LimiterSettings settings;
+    int frames = 0;                   ///< run
+    double max_area_change = 0.0;     ///< over frames; infinite where the scene broke down
+    double limiter_seconds = 0.0;     ///< median a frame, transfers included
+    double rest_seconds = 0.0;        ///< median a frame, of integration and collision
+    bool cut_short = false;           ///< by `enough`
+    std::vector<double> positions{};  ///< m, [3V], at the end
+
+    double seconds() const { return limiter_seconds + rest_seconds; }
+};
+
+/// Runs the scene that `document` describes over `frames` frames, or until `enough` says so after one of them.
+/// None where it was interrupted. Throws InputError and Error.
+std::optional<Trial> run_trial(const nlohmann::ordered_json& document, const std::string& file, int frames,
+                               const std::optional<OpenClDevice>& device,
+                               const std::function<bool(const Trial&)>& enough);
+
+}  // namespace apsl::scenes

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "compare/direct_filter.hpp"
+#include "compare/rival_filter.hpp"
+#include "pipeline/measures.hpp"
+#include "run/reference_filter.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+using namespace apsl;
+using namespace apsl::compare;
+
+namespace {
+
+// A square of two triangles in the air, its first vertex pinned, torn apart along x.
+scenes::ClothState square() {
+    const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
+    const std::vector<double> rest{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    const std::array<std::uint32_t, 1> pinned{0};
+    scenes::ClothState cloth = scenes::make_cloth_state(Topology::build(triangles, 4), rest, 0.2, pinned);
+    cloth.velocities[3] = 2.0;
+    cloth.velocities[6] = 2.0;
+    return cloth;
+}
+
+double greatest_area_change(const scenes::ClothState& cloth, double time_step) {
+    return scenes::summarize(cloth, scenes::predicted_area_changes(cloth, time_step)).max;
+}
+
+}  // namespace
+
+TEST_CASE("a rival's displacement goes into the velocities of free vertices") {
+    const methods::MethodInfo& rival = methods::all_methods()[0];
+    scenes::ClothState cloth = square();
+    const scenes::ClothState before = cloth;
+    const scenes::CustomFilter filter = make_rival_filter(rival, {}, cloth, 0.1);
+    CHECK(filter.name == rival.name);
+    CHECK(filter.filter(cloth).status == Status::ok);
+    CHECK(greatest_area_change(cloth, 0.1) < greatest_area_change(before, 0.1));
+    CHECK(cloth.positions == before.positions);
+    CHECK(cloth.velocities[0] == 0.0);
+}
+
+TEST_CASE("a rival is left out where numbers are not finite") {
+    scenes::ClothState cloth = square();
+    cloth.velocities[3] = std::numeric_limits<double>::infinity();
+    const scenes::ClothState before = cloth;
+    const scenes::CustomFilter filter = make_rival_filter(methods::all_methods()[0], {}, cloth, 0.1);
+    CHECK(filter.filter(cloth).status == Status::diverged);
+    CHECK(cloth.velocities == before.velocities);
+}
+
+TEST_CASE("direct solves end where tight Conjugate Gradient ends") {
+    scenes::StrainLimiting settings;
+    settings.parameters = {.time_step = 0.1f, .regularization = 1.05f, .sub_steps = 4, .tolerance = 1e-12f};
+    scenes::ClothState direct = square();
+    scenes::ClothState iterated = square();
+    CHECK(make_direct_filter(direct, settings).filter(direct).sub_steps == 4);
+    scenes::ReferenceFilter(iterated, settings).filter(iterated);
+    CHECK(direct.velocities != square().velocities);
+    for (std::size_t i = 0; i < direct.velocities.size(); ++i) {
+        CHECK(direct.velocities[i] == Approx(iterated.velocities[i]).margin(1e-9));
+    }
+}
+
+TEST_CASE("direct solves stop at the target and say what is not finite") {
+    scenes::StrainLimiting settings;
+    settings.parameters = {.time_step = 0.1f, .sub_steps = 4, .target_area_change = 10.0f};
+    scenes::ClothState cloth = square();
+    CHECK(make_direct_filter(cloth, settings).filter(cloth).sub_steps == 0);
+    CHECK(cloth.velocities == square().velocities);
+    cloth.velocities[4] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(make_direct_filter(cloth, settings).filter(cloth).status == Status::diverged);
+}
