@@ -80,6 +80,7 @@ int parse_and_run(int argument_count, char** arguments) {
         ->take_all()
         ->allow_extra_args(false);
     tune->footer(
+        "Times are first quartiles over frames: what else the machine does only adds.\n"
         "Exit: 0 the target is met, 1 nothing tried meets it (the best is written), 2 wrong input.\n"
         "Example: apsl tune scenes/curtain.json --target 0.02 --out tuned.json");
 

@@ -34,8 +34,8 @@ struct Trial {
     LimiterSettings settings;
     int frames = 0;                   ///< run
     double max_area_change = 0.0;     ///< over frames; infinite where the scene broke down
-    double limiter_seconds = 0.0;     ///< median a frame, transfers included
-    double rest_seconds = 0.0;        ///< median a frame, of integration and collision
+    double limiter_seconds = 0.0;     ///< first quartile a frame, transfers included
+    double rest_seconds = 0.0;        ///< first quartile a frame, of integration and collision
     bool cut_short = false;           ///< by `enough`
     std::vector<double> positions{};  ///< m, [3V], at the end
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "tune/tuning_search.hpp"
+
+#include "tune/scene_text.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace apsl::scenes;
+
+namespace {
+
+// A made-up cloth: area change 0.2 / (sub-steps · steps), 1 ms a sub-step and 10 ms of other work a step; frames from
+// `hard_from` on have three times the change. Whatever else is set makes no difference to areas; a lower
+// regularization costs more.
+struct MadeUp {
+    int hard_from = 1000;
+    int trials = 0;
+    int frames = 0;
+
+    std::optional<Trial> operator()(const LimiterSettings& s, int count,
+                                    const std::function<bool(const Trial&)>& enough) {
+        ++trials;
+        Trial trial{.settings = s};
+        while (trial.frames < count && !trial.cut_short) {
+            ++frames;
+            const double harder = trial.frames >= hard_from ? 3.0 : 1.0;
+            trial.max_area_change = std::max(trial.max_area_change, harder * 0.2 / (s.sub_steps * s.steps_per_frame));
+            trial.limiter_seconds = 1e-3 * s.sub_steps * s.steps_per_frame * (1.0 + 0.1 * (2.0 - s.regularization));
+            trial.rest_seconds = 1e-2 * s.steps_per_frame;
+            ++trial.frames;
+            trial.cut_short = trial.frames < count && enough(trial);
+        }
+        return trial;
+    }
+};
+
+Trial found(const TuningGoal& goal, MadeUp& cloth, int frames) {
+    const TrialRun run = [&](const auto& settings, int count, const auto& enough) {
+        return cloth(settings, count, enough);
+    };
+    return search_settings(goal, LimiterSettings{}, true, frames, run).value();
+}
+
+}  // namespace
+
+TEST_CASE("the search finds the fewest sub-steps that meet the target") {
+    MadeUp cloth;
+    const Trial best = found({.target = 0.026, .budget_seconds = {}}, cloth, 200);
+    CHECK(best.settings.sub_steps == 8);
+    CHECK(best.settings.steps_per_frame == 1);
+    CHECK(best.settings.regularization == 1.2);
+    CHECK(best.frames == 200);
+    CHECK(cloth.frames < 60 * cloth.trials);  // most trials are short
+}
+
+TEST_CASE("frames that only a whole run has make for more sub-steps") {
+    MadeUp cloth{.hard_from = 150};
+    const Trial best = found({.target = 0.026, .budget_seconds = {}}, cloth, 200);
+    CHECK(best.max_area_change <= 0.026);
+    CHECK(best.settings.sub_steps == 32);  // 0.6 / 26 would do, the next that is tried is 32
+    CHECK(best.frames == 200);
+}
+
+TEST_CASE("within a budget the closest to a target out of reach") {
+    MadeUp cloth;
+    const TuningGoal goal{.target = 0.001, .budget_seconds = 0.0125};
+    const Trial best = found(goal, cloth, 60);
+    CHECK(goal.within_budget(best));
+    CHECK_FALSE(goal.meets_target(best));
+    CHECK(best.settings.sub_steps * best.settings.steps_per_frame == 10);  // what is given to start from
+}
+
+TEST_CASE("an interruption ends the search") {
+    CHECK_FALSE(search_settings({}, LimiterSettings{}, true, 60,
+                                [](const auto&, int, const auto&) { return std::optional<Trial>(); }));
+}
+
+TEST_CASE("settings change nothing else in a scene") {
+    const auto document = nlohmann::ordered_json::parse(
+        R"({"time_step": 0.01, "strain_limiting": {"matrix": "consistent", "regularization": [1.1, 1.2]}, "frames": 3})");
+    const auto changed = with_settings(document, {.steps_per_frame = 2, .sub_steps = 3, .regularization = 1.5});
+    CHECK(changed.dump() ==
+          R"({"time_step":0.005,"strain_limiting":{"matrix":"consistent","regularization":[1.1,1.2],"sub_steps":3,)"
+          R"("tolerance":0.1,"max_iterations":50},"frames":3,"steps_per_frame":2})");
+    CHECK(limiter_settings(changed).sub_steps == 3);
+}
+
+TEST_CASE("a scene's text is the scene, short things in one line") {
+    const auto document = nlohmann::ordered_json::parse(R"({"b": [1, 2.5, "x"], "a": {"c": {}, "d": null}})");
+    CHECK(scene_text(document) == "{\n  \"b\": [1, 2.5, \"x\"],\n  \"a\": {\"c\": {}, \"d\": null}\n}\n");
+    nlohmann::ordered_json wide{{"long", std::vector<int>(60, 100)}, {"text", "a\"b"}};
+    CHECK(nlohmann::ordered_json::parse(scene_text(wide)) == wide);
+    CHECK(scene_text(wide).find("\n    100,\n") != std::string::npos);
+}
