@@ -165,6 +165,7 @@ int compare_command(const CompareOptions& options) {
         conditions.device = scenes::choose_opencl_device(options.device);
     }
     if (study.run_seconds) conditions.run_seconds = *study.run_seconds;
+    conditions.keep_frames = study.keep_frames;
     ResultsFile results(options.out, conditions.device);
     for (const SceneCase& scene : study.scenes) {
         results.add_scene(scene);

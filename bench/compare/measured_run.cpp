@@ -43,6 +43,13 @@ std::string device_name(const scenes::FilterStage& filter) {
     return "none";
 }
 
+void add_displacement(const scenes::ClothState& cloth, int frame, int frames, MeasuredRun& result) {
+    const int first = frames - (frames + 3) / 4;
+    if (frame < first) return;
+    const std::array<double, 3> now = mean_displacement(cloth);
+    for (std::size_t k = 0; k < 3; ++k) result.mean_displacement[k] += now[k] / (frames - first);
+}
+
 void measure_cloth(const scenes::ClothState& cloth, int frame, const RunConditions& conditions, MeasuredRun& result) {
     const PrincipalStretch stretch = principal_stretch(cloth);
     result.principal_stretch.min = std::min(result.principal_stretch.min, stretch.min);
@@ -80,7 +87,10 @@ std::optional<MeasuredRun> measure_run(const PlannedRun& run, const RunCondition
                 for (const KernelTime& kernel : opencl->kernel_times()) result.device_seconds += kernel.seconds;
             }
         }
-        if (!result.breakdown) measure_cloth(simulation.cloth(), frame, conditions, result);
+        if (!result.breakdown) {
+            measure_cloth(simulation.cloth(), frame, conditions, result);
+            add_displacement(simulation.cloth(), frame, scene.frames, result);
+        }
         if (conditions.show) conditions.show(result.frames.back());
         result.timed_out = !result.breakdown && frame + 1 < scene.frames && !time_left();
     }

@@ -7,6 +7,7 @@
 #include "run/opencl_devices.hpp"
 #include "run/report.hpp"
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@ struct PlannedRun {
 struct RunConditions {
     std::optional<scenes::OpenClDevice> device;  ///< for ContenderKind::ours
     double run_seconds = 120.0;                  ///< no frame is begun after so long, set-up apart
+    bool keep_frames = false;                    ///< the greatest area change of every frame in the results
     bool profile = false;                        ///< device times: a run whose times are not to be compared
     const ConvergedSolution* converged = nullptr;
     std::function<void(const scenes::FrameReport&)> show;  ///< after each frame
@@ -43,6 +45,8 @@ struct MeasuredRun {
     PrincipalStretch principal_stretch;  ///< over all ends of frames
     std::vector<FrameDeviation> deviation;
     Energy energy;  ///< at the end
+    std::array<double, 3>
+        mean_displacement{};  ///< m, measures.hpp, mean over the ends of the last quarter of the frames
     std::optional<scenes::Breakdown> breakdown;
     bool timed_out = false;
     double device_seconds = 0.0;  ///< all kernels, all frames; only with RunConditions::profile

@@ -74,6 +74,20 @@ Deviation deviation(std::span<const double> positions, std::span<const double> e
     return result;
 }
 
+std::array<double, 3> mean_displacement(const scenes::ClothState& cloth) {
+    std::array<double, 3> sum{};
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
+        if (cloth.inverse_masses[v] == 0.0) continue;
+        ++count;
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += cloth.positions[3 * v + k] - cloth.rest_positions[3 * v + k];
+    }
+    if (count > 0) {
+        for (double& component : sum) component /= static_cast<double>(count);
+    }
+    return sum;
+}
+
 Quartiles quartiles(std::vector<double> samples) {
     if (samples.empty()) return {};
     std::sort(samples.begin(), samples.end());

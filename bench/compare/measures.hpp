@@ -36,6 +36,9 @@ struct Deviation {
 /// Of positions from others of the same size: m, [3V], V ≥ 1.
 Deviation deviation(std::span<const double> positions, std::span<const double> expected);
 
+/// m, mean over the free vertices of the way from their rest positions; zero where there are none.
+std::array<double, 3> mean_displacement(const scenes::ClothState& cloth);
+
 /// First quartile, median and third quartile, interpolated; zeros where there are no samples.
 struct Quartiles {
     double first = 0.0;

@@ -5,6 +5,7 @@
 #include "run/input_error.hpp"
 #include "run/whole_file.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <thread>
 #include <utility>
@@ -129,6 +130,7 @@ bool ResultsFile::has(const PlannedRun& run, const RunConditions& conditions,
     if (found->value("status", "") == "timed_out" && found->value("run_seconds", 0.0) < conditions.run_seconds) {
         return false;
     }
+    if (conditions.keep_frames && !found->contains("frame_max_area_change")) return false;
     if (conditions.profile && run.contender->kind == ContenderKind::ours &&
         found->value("device_seconds_per_frame", Json()).is_null()) {
         return false;
@@ -182,6 +184,15 @@ Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const 
          {{"kinetic", measured.energy.kinetic},
           {"gravity", measured.energy.gravity},
           {"springs", measured.energy.springs}}}};
+    entry["mean_displacement"] = measured.breakdown || measured.timed_out ? Json() : Json(measured.mean_displacement);
+    if (conditions.keep_frames) {
+        entry["frame_max_area_change"] = Json::array();
+        // Five digits: a chart needs no more, and the file stays small.
+        for (const scenes::FrameReport& frame : measured.frames) {
+            entry["frame_max_area_change"].push_back(
+                std::isfinite(frame.max_area_change) ? Json(std::round(1e6 * frame.max_area_change) / 1e6) : Json());
+        }
+    }
     for (Json& earlier : document_["runs"]) {
         if (&earlier == find(run.scene->name, run.contender->name, run.prepared.knobs)) return earlier = entry;
     }

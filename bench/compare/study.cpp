@@ -122,6 +122,10 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
     if (object.has("run_seconds")) {
         study.run_seconds = object.find("run_seconds").number(Range::above(0.0));
     }
+    if (const SceneValue keep = object.find("keep_frames"); keep.json != nullptr) {
+        if (!keep.json->is_boolean()) keep.expected("true or false");
+        study.keep_frames = keep.json->get<bool>();
+    }
     object.refuse_other_keys();
     return study;
 }

@@ -29,6 +29,7 @@ struct Study {
     std::vector<ContenderRuns> methods;
     std::optional<DeviationSettings> deviation;
     std::optional<double> run_seconds;
+    bool keep_frames = false;
 };
 
 /// Reads a scene file as a case by the name of its file, changed by `overrides`. Throws InputError.

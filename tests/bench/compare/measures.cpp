@@ -57,6 +57,16 @@ TEST_CASE("energy of free vertices: kinetic, height lost, springs") {
     CHECK(sum.springs == Approx(0.5 * 8.0 * 0.25));
 }
 
+TEST_CASE("mean displacement of the free vertices") {
+    scenes::ClothState cloth = triangle();
+    cloth.inverse_masses[0] = 0.0;
+    cloth.positions = {7, 7, 7, 1, -2, 0, 0, 2, 4};
+    const std::array<double, 3> moved = mean_displacement(cloth);
+    CHECK(moved == std::array<double, 3>{0.0, -1.0, 2.0});
+    cloth.inverse_masses = {0.0, 0.0, 0.0};
+    CHECK(mean_displacement(cloth) == std::array<double, 3>{});
+}
+
 TEST_CASE("deviation is zero from itself and a distance from elsewhere") {
     const std::vector<double> here{0, 0, 0, 1, 1, 1};
     CHECK(deviation(here, here).rms == 0.0);
