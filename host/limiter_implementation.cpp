@@ -29,8 +29,10 @@ constexpr std::size_t gradient_bytes = 32;
 }
 
 apsl_parameters device_parameters(const Parameters& p) {
-    return {p.time_step, 1.0f / p.time_step, p.regularization,     p.target_area_change, p.tolerance * p.tolerance,
-            p.sub_steps, p.max_iterations,   p.adaptive_iterations};
+    const float first_damping =
+        p.first_regularization > 0.0f ? (p.first_regularization - 1.0f) / (p.regularization - 1.0f) : 1.0f;
+    return {p.time_step, p.regularization, first_damping,        p.target_area_change, p.tolerance * p.tolerance,
+            p.sub_steps, p.max_iterations, p.adaptive_iterations};
 }
 
 void check_view(const BufferView& view, std::size_t floats, const char* name) {
@@ -264,6 +266,7 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
     launch(commands, predict_positions);
     launch(commands, order_triangle_values);
     for (cl_int sub_step = 0; sub_step < sub_steps; ++sub_step) {
+        set_argument(assemble_gradients, 11, sub_step);
         set_argument(begin_solve, 5, sub_step);
         queue_solve(commands, max_iterations);
     }

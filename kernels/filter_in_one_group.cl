@@ -35,9 +35,9 @@ APSL_KERNEL void filter_in_one_group(
                  regularization + regularization_offset);
     for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
-        const apsl_assembly_sums sums =
-            assemble_triangles(cloths[c], true, parameters[c].regularization, factor, triangles, predicted, gradients,
-                               residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
+        const apsl_assembly_sums sums = assemble_triangles(
+            cloths[c], true, parameters[c].regularization, scheduled_damping(parameters[c], stats.sub_steps), factor,
+            triangles, predicted, gradients, residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
         const float squared_change = group_sum(sum_of_lanes(sums.areas.squared_change), scratch);
         const float measured = group_sum(sum_of_lanes(sums.areas.measured), scratch);
         const float not_finite = group_sum(sum_of_lanes(sums.areas.not_finite), scratch);

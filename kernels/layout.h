@@ -31,8 +31,8 @@ typedef struct {
 // One cloth's apsl::Parameters for the current call.
 typedef struct {
     float time_step;           // s
-    float inverse_time_step;   // 1/s
-    float regularization;      // α
+    float regularization;      // α, of the last sub-step
+    float first_damping;       // (α − 1) of the first sub-step over that of the last; 1 where α stays
     float target_area_change;  // |A − A⁰| / A⁰
     float tolerance_squared;
     apsl_int sub_steps;

@@ -69,6 +69,7 @@ typedef struct apsl_limiter_parameters {
     float tolerance;             /* in [0, 1), of a solve's residual */
     int32_t max_iterations;      /* >= 1, of a solve */
     int32_t adaptive_iterations; /* 0: alpha stays as given; else more iterations than this raise it */
+    float first_regularization;  /* 0: alpha is the same in every sub-step; else > 1, that of the first */
 } apsl_limiter_parameters;
 
 /* apsl::BufferView: 32-bit floats in a buffer of the caller's. */

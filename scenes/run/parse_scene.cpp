@@ -186,6 +186,8 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
         static_cast<std::int32_t>(object.integer("max_iterations", parameters.max_iterations, 1, kMaxCount));
     parameters.adaptive_iterations =
         static_cast<std::int32_t>(object.integer("adaptive_iterations", parameters.adaptive_iterations, 0, kMaxCount));
+    parameters.first_regularization = static_cast<float>(
+        object.number("first_regularization", parameters.first_regularization, Range::at_least(0.0)));
     object.refuse_other_keys();
     try {
         validate(parameters);  // what 32-bit floats make of the numbers

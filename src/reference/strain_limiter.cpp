@@ -9,6 +9,7 @@
 #include "reference/displacements.hpp"
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
+#include "reference/scheduled_regularization.hpp"
 
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
@@ -84,7 +85,8 @@ struct BasicStrainLimiter<Real>::Implementation {
         for (std::size_t a = 0; a < geometry.size(); ++a) {
             const Real given = buffers.regularization.empty() ? static_cast<Real>(parameters.regularization)
                                                               : buffers.regularization[a];
-            effective_regularization[a] = raised_regularization(given, adaptive_factor);
+            effective_regularization[a] =
+                raised_regularization(scheduled_regularization(given, parameters, stats.sub_steps), adaptive_factor);
         }
         regularize(std::span<const Real>(effective_regularization), G);
 

@@ -163,4 +163,5 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(p.tolerance == parameters.tolerance);
     CHECK(p.max_iterations == parameters.max_iterations);
     CHECK(p.adaptive_iterations == parameters.adaptive_iterations);
+    CHECK(p.first_regularization == parameters.first_regularization);
 }

@@ -87,10 +87,10 @@ void order_triangle_values(Arrays& a, const Build& build) {
     run(k, a.groups, build, a.cloth_count());
 }
 
-void assemble_gradients(Arrays& a, const Build& build) {
+void assemble_gradients(Arrays& a, const Build& build, int sub_step) {
     const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "assemble_gradients");
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients, a.residual,
-                  a.damped_diagonal, a.ordered_rest_areas, a.ordered_regularization);
+                  a.damped_diagonal, a.ordered_rest_areas, a.ordered_regularization, cl_int{sub_step});
     run(k, a.groups, build, a.cloth_count());
 }
 

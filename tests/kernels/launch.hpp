@@ -29,7 +29,7 @@ void set_parameters(Arrays& arrays, const Build& build, const apsl_parameter_blo
                     std::uint32_t count);
 void predict_positions(Arrays& arrays, const Build& build);
 void order_triangle_values(Arrays& arrays, const Build& build);
-void assemble_gradients(Arrays& arrays, const Build& build);
+void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
 void measure_area_change(Arrays& arrays, const Build& build);
 void begin_solve(Arrays& arrays, const Build& build, int sub_step);
 void end_call(Arrays& arrays, const Build& build);
