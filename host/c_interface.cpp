@@ -71,7 +71,8 @@ apsl::Options options_from(const apsl_limiter_options& o) {
             .work_group_size = o.work_group_size,
             .position_stride = o.position_stride,
             .velocity_stride = o.velocity_stride,
-            .regularization_per_triangle = o.regularization_per_triangle != 0};
+            .regularization_per_triangle = o.regularization_per_triangle != 0,
+            .kept_pressures = o.kept_pressures};
 }
 
 apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
@@ -103,7 +104,8 @@ apsl_limiter_options apsl_limiter_default_options(void) {
             o.work_group_size,
             o.position_stride,
             o.velocity_stride,
-            o.regularization_per_triangle};
+            o.regularization_per_triangle,
+            o.kept_pressures};
 }
 
 apsl_limiter_parameters apsl_limiter_default_parameters(void) {

@@ -81,7 +81,8 @@ typedef struct {
 #define APSL_PARTIAL_SQUARED_CHANGE 6
 #define APSL_PARTIAL_MEASURED 7  // triangles with a rest area
 #define APSL_PARTIAL_NOT_FINITE 8
-#define APSL_PARTIAL_KINDS 9
+#define APSL_PARTIAL_GUESS 9  // r̄·y₀
+#define APSL_PARTIAL_KINDS 10
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSL_TRIANGLE_ALIGNMENT 16

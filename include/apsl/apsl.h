@@ -58,6 +58,7 @@ typedef struct apsl_limiter_options {
     uint32_t position_stride;            /* floats from one vertex to the next, >= 3 */
     uint32_t velocity_stride;            /* likewise */
     int32_t regularization_per_triangle; /* not 0: a regularization buffer is given with every call */
+    uint32_t kept_pressures;             /* sub-steps whose pressures the next call's solves start from */
 } apsl_limiter_options;
 
 /* apsl::Parameters: what may change from call to call. Begin with apsl_limiter_default_parameters(). */
