@@ -6,6 +6,7 @@
 #include <apsl/topology.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>

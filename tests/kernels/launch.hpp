@@ -36,6 +36,8 @@ void end_call(Arrays& arrays, const Build& build);
 void assemble_pressure_csr(Arrays& arrays, const Build& build);
 void csr_spmv_dot(Arrays& arrays, const Build& build, int iteration);
 void matrix_free_apply_dot(Arrays& arrays, const Build& build, int iteration);
+void measure_guess(Arrays& arrays, const Build& build);
+void start_from_guess(Arrays& arrays, const Build& build);
 void cg_update(Arrays& arrays, const Build& build, int iteration);
 /// `iterations`: those done before.
 void finish_solve(Arrays& arrays, const Build& build, int iterations);
