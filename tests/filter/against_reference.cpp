@@ -260,10 +260,11 @@ TEST_CASE("kept pressures: the guess a call starts from is the reference's, and 
                 std::vector<double> correction(velocities);
                 for (std::size_t n = 0; n < correction.size(); ++n) correction[n] -= cloth.velocities[n];
                 const std::vector<float> read = buffers.read_velocities();
-                CHECK(difference({read.begin(), read.end()}, velocities) <= 0.02 * norm(correction));
+                const std::vector<double> filtered(read.begin(), read.end());
+                CHECK(difference(filtered, velocities) <= 0.02 * norm(correction));
             }
-            // The same call again: the first two solves have nothing left to do.
-            CHECK(warm < cold / 2);
+            // The same call again: the first solve has nothing left to do; the third's guess is the second's.
+            CHECK(3 * warm < 2 * cold);
         }
     }
     cloth.positions[40] = first_coordinate;
