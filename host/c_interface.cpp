@@ -71,7 +71,8 @@ apsl::Options options_from(const apsl_limiter_options& o) {
             .work_group_size = o.work_group_size,
             .position_stride = o.position_stride,
             .velocity_stride = o.velocity_stride,
-            .regularization_per_triangle = o.regularization_per_triangle != 0};
+            .regularization_per_triangle = o.regularization_per_triangle != 0,
+            .kept_pressures = o.kept_pressures};
 }
 
 apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
@@ -81,7 +82,8 @@ apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
             .target_area_change = p.target_area_change,
             .tolerance = p.tolerance,
             .max_iterations = p.max_iterations,
-            .adaptive_iterations = p.adaptive_iterations};
+            .adaptive_iterations = p.adaptive_iterations,
+            .first_regularization = p.first_regularization};
 }
 
 apsl::BufferView view_from(const apsl_buffer_view& view) {
@@ -102,13 +104,14 @@ apsl_limiter_options apsl_limiter_default_options(void) {
             o.work_group_size,
             o.position_stride,
             o.velocity_stride,
-            o.regularization_per_triangle};
+            o.regularization_per_triangle,
+            o.kept_pressures};
 }
 
 apsl_limiter_parameters apsl_limiter_default_parameters(void) {
     const apsl::Parameters p;
-    return {p.time_step, p.regularization, p.sub_steps,          p.target_area_change,
-            p.tolerance, p.max_iterations, p.adaptive_iterations};
+    return {p.time_step, p.regularization, p.sub_steps,           p.target_area_change,
+            p.tolerance, p.max_iterations, p.adaptive_iterations, p.first_regularization};
 }
 
 apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_count, size_t vertex_count,

@@ -29,8 +29,10 @@ constexpr std::size_t gradient_bytes = 32;
 }
 
 apsl_parameters device_parameters(const Parameters& p) {
-    return {p.time_step, 1.0f / p.time_step, p.regularization,     p.target_area_change, p.tolerance * p.tolerance,
-            p.sub_steps, p.max_iterations,   p.adaptive_iterations};
+    const float first_damping =
+        p.first_regularization > 0.0f ? (p.first_regularization - 1.0f) / (p.regularization - 1.0f) : 1.0f;
+    return {p.time_step, p.regularization, first_damping,        p.target_area_change, p.tolerance * p.tolerance,
+            p.sub_steps, p.max_iterations, p.adaptive_iterations};
 }
 
 void check_view(const BufferView& view, std::size_t floats, const char* name) {
@@ -125,7 +127,9 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     product = zeroed_buffer(triangle_count);
     direction = buffer(triangle_count * sizeof(float));
     direction_product = buffer(triangle_count * sizeof(float));
-    pressure = buffer(triangle_count * sizeof(float));
+    const std::size_t slots = std::max<std::size_t>(options.kept_pressures, 1);
+    for (std::size_t n = 0; n < (one_group() ? 1 : slots); ++n)
+        pressures.push_back(zeroed_buffer(triangle_count * (one_group() ? slots : 1)));
 }
 
 void StrainLimiter::Implementation::create_kernels() {
@@ -136,8 +140,9 @@ void StrainLimiter::Implementation::create_kernels() {
         filter_in_one_group = kernel("filter_in_one_group");
         set_arguments(filter_in_one_group, 0, cloths, parameters, states, stats, vertex_order, triangle_order,
                       triangles, patches, patch_vertices, local_triangles, corner_offsets, corners, predicted,
-                      gradients, residual, damped_diagonal, product, direction, direction_product, pressure,
+                      gradients, residual, damped_diagonal, product, direction, direction_product, pressures[0],
                       ordered_rest_areas, ordered_regularization);
+        set_argument(filter_in_one_group, 32, cl_uint{triangle_count});
         return;
     }
     predict_positions = kernel("predict_positions");
@@ -156,10 +161,17 @@ void StrainLimiter::Implementation::create_kernels() {
     create_apply_kernels();
     cg_update = kernel("cg_update");
     set_arguments(cg_update, 0, cloths, states, partials, residual, damped_diagonal, product, direction,
-                  direction_product, pressure);
+                  direction_product);
     gather_displacements = kernel("gather_displacements");
     set_arguments(gather_displacements, 0, cloths, parameters, states, stats, partials, corner_offsets, corners,
-                  gradients, pressure, predicted);
+                  gradients);
+    set_argument(gather_displacements, 9, predicted);
+    if (options.kept_pressures > 0) {
+        measure_guess = kernel("measure_guess");
+        set_arguments(measure_guess, 0, cloths, states, partials, residual);
+        start_from_guess = kernel("start_from_guess");
+        set_arguments(start_from_guess, 0, cloths, states, partials, residual, damped_diagonal, product);
+    }
     update_velocities = kernel("update_velocities");
     set_arguments(update_velocities, 0, cloths, parameters, stats, vertex_order, predicted);
 }
@@ -184,7 +196,8 @@ void StrainLimiter::Implementation::create_apply_kernels() {
         finish_solve = kernel("finish_solve");
         set_arguments(finish_solve, 0, cloths, parameters, states, partials, patches, patch_vertices, local_triangles,
                       corner_offsets, corners, gradients, residual, damped_diagonal, product, direction,
-                      direction_product, pressure, groups);
+                      direction_product);
+        set_argument(finish_solve, 16, groups);
     }
 }
 
@@ -239,10 +252,32 @@ void StrainLimiter::Implementation::queue_parameters(CommandSequence& commands,
     }
 }
 
-void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int max_iterations) const {
+void StrainLimiter::Implementation::use_pressures(int sub_step) const {
+    const BufferHandle& pressure = pressures[std::min(static_cast<std::size_t>(sub_step), pressures.size() - 1)];
+    set_argument(cg_update, 8, pressure);
+    if (finish_solve.handle) set_argument(finish_solve, 15, pressure);
+    set_argument(gather_displacements, 8, pressure);
+    if (options.kept_pressures == 0) return;
+    set_argument(measure_guess, 4, pressure);
+    set_argument(start_from_guess, 6, pressure);
+}
+
+void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, int sub_step) const {
+    const cl_uint multiplied = assembled() ? 7 : 10;
+    launch(commands, measure_guess);
+    set_argument(apply_dot, multiplied, pressures[std::min(static_cast<std::size_t>(sub_step), pressures.size() - 1)]);
+    set_argument(apply_dot, multiplied + 2, cl_int{0});
+    launch(commands, apply_dot);
+    set_argument(apply_dot, multiplied, residual);
+    launch(commands, start_from_guess);
+}
+
+void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int sub_step, int max_iterations) const {
+    use_pressures(sub_step);
     launch(commands, assemble_gradients);
     launch_one_group(commands, begin_solve);
     if (assembled()) launch(commands, assemble_pressure_csr);
+    if (options.kept_pressures > 0) queue_guess(commands, sub_step);
     const cl_int queued = queued_iterations(options, largest_cloth, max_iterations);
     for (cl_int k = 0; k < queued; ++k) {
         set_argument(apply_dot, assembled() ? 9 : 12, k);
@@ -264,8 +299,9 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
     launch(commands, predict_positions);
     launch(commands, order_triangle_values);
     for (cl_int sub_step = 0; sub_step < sub_steps; ++sub_step) {
+        set_argument(assemble_gradients, 11, sub_step);
         set_argument(begin_solve, 5, sub_step);
-        queue_solve(commands, max_iterations);
+        queue_solve(commands, sub_step, max_iterations);
     }
     launch(commands, measure_area_change);
     launch_one_group(commands, end_call);

@@ -86,6 +86,7 @@ std::vector<std::string_view> kernel_files(const Options& options) {
     std::vector<std::string_view> files{"set_parameters.cl",     "predict_positions.cl",    "order_triangle_values.cl",
                                         "assemble_gradients.cl", "measure_area_change.cl",  "solve_control.cl",
                                         "cg_update.cl",          "gather_displacements.cl", "update_velocities.cl"};
+    if (options.kept_pressures > 0) files.push_back("first_guess.cl");
     if (options.apply == Apply::assembled_csr)
         files.insert(files.end(), {"assemble_pressure_csr.cl", "csr_spmv_dot.cl"});
     else if (options.matrix == Matrix::printed)
@@ -104,7 +105,8 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
            define("APSL_VELOCITY_STRIDE", options.velocity_stride) +
            define("APSL_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
            define("APSL_PATCH_VERTICES", patch_vertices) +
-           define("APSL_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0);
+           define("APSL_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +
+           define("APSL_KEPT_PRESSURES", options.kept_pressures);
 }
 
 std::uint32_t patch_triangles(const DeviceFacts& facts, const Options& options, std::size_t largest) {

@@ -12,12 +12,13 @@ APSL_KERNEL void assemble_gradients(__global const apsl_cloth* cloths, __global 
                                     __global const uint* triangles, __global const float4* predicted,
                                     __global apsl_gradients* gradients, __global float* residual,
                                     __global float* damped_diagonal, __global const float* rest_areas,
-                                    __global const float* regularization) {
+                                    __global const float* regularization, int sub_step) {
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const apsl_assembly_sums sums =
-        assemble_triangles(cloths[c], !states[c].stopped, parameters[c].regularization, states[c].adaptive_factor,
-                           triangles, predicted, gradients, residual, damped_diagonal, rest_areas, regularization);
+        assemble_triangles(cloths[c], !states[c].stopped, parameters[c].regularization,
+                           scheduled_damping(parameters[c], sub_step), states[c].adaptive_factor, triangles, predicted,
+                           gradients, residual, damped_diagonal, rest_areas, regularization);
     store_area_partials(sums.areas, partials, scratch);
     store_partial(partials, APSL_PARTIAL_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.squares), scratch));
     store_partial(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.scaled_squares), scratch));

@@ -3,6 +3,7 @@
 #ifndef APSL_CG_STEP_H
 #define APSL_CG_STEP_H
 
+#include "first_guess.h"
 #include "layout.h"
 #include "work_group.h"
 
@@ -33,8 +34,8 @@ APSL_INLINE float2 advance_cg(apsl_cloth cloth, bool active, float step, float b
         if (!first_iteration) {  // uniform; what a former solve left behind is never read
             p += beta * direction[i];
             s += beta * direction_product[i];
-            y = pressure[i];
         }
+        if (APSL_KEPT_PRESSURES > 0 || !first_iteration) y = pressure[i];
         y += step * p;
         r -= step * s;
         direction[i] = p;

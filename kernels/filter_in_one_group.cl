@@ -3,6 +3,7 @@
 // in a single launch, and every sum that decides something stays in the group. The same steps as the other kernels, in
 // the same order. Reference: apsl::reference::BasicStrainLimiter.
 #include "cg_step.h"
+#include "first_guess.h"
 #include "layout.h"
 #include "patch_product.h"
 #include "regularization.h"
@@ -22,7 +23,7 @@ APSL_KERNEL void filter_in_one_group(
     __global float* ordered_regularization, __global const float* positions, ulong position_offset,
     __global float* velocities, ulong velocity_offset, __global const float* inverse_masses, ulong inverse_mass_offset,
     __global const float* rest_areas, ulong rest_area_offset, __global const float* regularization,
-    ulong regularization_offset) {
+    ulong regularization_offset, uint pressure_stride) {
     APSL_SCRATCH;
     __local float4 forces[APSL_PATCH_VERTICES];
     const uint c = (uint)get_group_id(1);
@@ -35,9 +36,9 @@ APSL_KERNEL void filter_in_one_group(
                  regularization + regularization_offset);
     for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
-        const apsl_assembly_sums sums =
-            assemble_triangles(cloths[c], true, parameters[c].regularization, factor, triangles, predicted, gradients,
-                               residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
+        const apsl_assembly_sums sums = assemble_triangles(
+            cloths[c], true, parameters[c].regularization, scheduled_damping(parameters[c], stats.sub_steps), factor,
+            triangles, predicted, gradients, residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
         const float squared_change = group_sum(sum_of_lanes(sums.areas.squared_change), scratch);
         const float measured = group_sum(sum_of_lanes(sums.areas.measured), scratch);
         const float not_finite = group_sum(sum_of_lanes(sums.areas.not_finite), scratch);
@@ -51,10 +52,32 @@ APSL_KERNEL void filter_in_one_group(
                    stats.max_area_change > parameters[c].target_area_change;
         if (going_on) {
             group_memory_barrier();
+#if APSL_KEPT_PRESSURES > 0
+            // One array a sub-step; later sub-steps share the last.
+            __global float* y = pressure + (ulong)min(stats.sub_steps, APSL_KEPT_PRESSURES - 1) * pressure_stride;
+            const float dot =
+                group_sum(guess_dot(cloths[c], true, (__global float4*)residual, (__global float4*)y), scratch);
+            const float curvature =
+                group_sum(multiply_patches(cloths[c], true, patches, patch_vertices, local_triangles, corner_offsets,
+                                           corners, gradients, y, product, forces),
+                          scratch);
+            group_memory_barrier();
+            const float2 guessed =
+                scale_guess(cloths[c], true, guess_scale(dot, curvature), (__global float4*)residual,
+                            (__global float4*)damped_diagonal, (__global float4*)product, (__global float4*)y);
+            solve.residual = group_sum(guessed.x, scratch);
+            solve.scaled_residual = group_sum(guessed.y, scratch);
+            stats.cg_iterations += 1;  // the product with a guess costs as much
+            group_memory_barrier();
+#else
+            __global float* y = pressure;
+            (void)pressure_stride;
+#endif
             iterate_in_group(&solve, parameters + c, cloths + c, patches, patch_vertices, local_triangles,
                              corner_offsets, corners, gradients, residual, damped_diagonal, product, direction,
-                             direction_product, pressure, forces, scratch);
-            displace_vertices(cloths[c], solve.iterations > 0, corner_offsets, corners, gradients, pressure, predicted);
+                             direction_product, y, forces, scratch);
+            displace_vertices(cloths[c], APSL_KEPT_PRESSURES > 0 || solve.iterations > 0, corner_offsets, corners,
+                              gradients, y, predicted);
             const bool converged = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
             factor = adapted_factor(factor, parameters[c], solve.iterations, converged);
             stats.sub_steps += 1;

@@ -2,6 +2,7 @@
 // Eq. (6) with λ = p Δt²: x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, and how the solve ended. Reference:
 // apsl::reference::displacements. Moves 12 B corners, 2 B offsets, 24 B gradients, 4 B pressure, 16 B position read and
 // written, a triangle.
+#include "first_guess.h"
 #include "layout.h"
 #include "regularization.h"
 #include "vertex_motion.h"
@@ -15,15 +16,17 @@ APSL_KERNEL void gather_displacements(__global const apsl_cloth* cloths, __globa
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const float initial = states[c].initial_residual;
-    // A right-hand side of zero does no iteration, and then there is no pressure to read.
-    displace_vertices(cloths[c], !states[c].stopped && states[c].solve_iterations > 0, corner_offsets, corners,
-                      gradients, pressure, predicted);
+    // A right-hand side of zero does no iteration, and then, unless a guess was scaled by 0, no pressure is there to
+    // read.
+    const bool solved = APSL_KEPT_PRESSURES > 0 || states[c].solve_iterations > 0;
+    displace_vertices(cloths[c], !states[c].stopped && solved, corner_offsets, corners, gradients, pressure, predicted);
     const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     if (get_group_id(0) == 0 && get_local_id(0) == 0 && !states[c].stopped) {
         const bool converged = residual <= parameters[c].tolerance_squared * initial;
         states[c].adaptive_factor =
             adapted_factor(states[c].adaptive_factor, parameters[c], states[c].solve_iterations, converged);
-        stats[c].cg_iterations += states[c].solve_iterations;
+        // The product with a guess costs as much as an iteration.
+        stats[c].cg_iterations += states[c].solve_iterations + (APSL_KEPT_PRESSURES > 0 ? 1 : 0);
         if (initial > 0.0f) stats[c].residual = fmax(stats[c].residual, sqrt(residual / initial));
         if (!converged && stats[c].status == APSL_STATUS_OK) stats[c].status = APSL_STATUS_NOT_CONVERGED;
     }

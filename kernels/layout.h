@@ -31,8 +31,8 @@ typedef struct {
 // One cloth's apsl::Parameters for the current call.
 typedef struct {
     float time_step;           // s
-    float inverse_time_step;   // 1/s
-    float regularization;      // α
+    float regularization;      // α, of the last sub-step
+    float first_damping;       // (α − 1) of the first sub-step over that of the last; 1 where α stays
     float target_area_change;  // |A − A⁰| / A⁰
     float tolerance_squared;
     apsl_int sub_steps;
@@ -81,7 +81,8 @@ typedef struct {
 #define APSL_PARTIAL_SQUARED_CHANGE 6
 #define APSL_PARTIAL_MEASURED 7  // triangles with a rest area
 #define APSL_PARTIAL_NOT_FINITE 8
-#define APSL_PARTIAL_KINDS 9
+#define APSL_PARTIAL_GUESS 9  // r̄·y₀
+#define APSL_PARTIAL_KINDS 10
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSL_TRIANGLE_ALIGNMENT 16

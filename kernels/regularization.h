@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Adaptive α (Section 4): raised where CG fails or takes too many iterations, restored where it takes few.
-// Reference: apsl::reference, adaptive_regularization.
+// α of a solve: scheduled over the sub-steps, and adaptive (Section 4): raised where CG fails or takes too many
+// iterations, restored where it takes few. Reference: apsl::reference, scheduled_regularization and
+// adaptive_regularization.
 #ifndef APSL_REGULARIZATION_H
 #define APSL_REGULARIZATION_H
 
@@ -11,8 +12,16 @@
 #define APSL_REGULARIZATION_PER_TRIANGLE 0
 #endif
 
-// α as given where the factor is 1. The floor lets α = 1 be raised too.
-APSL_INLINE lanes effective_regularization(lanes alpha, float factor) {
+// What the schedule multiplies α − 1 by: first_damping in the first sub-step, 1 in the last, geometric in between.
+APSL_INLINE float scheduled_damping(apsl_parameters parameters, int sub_step) {
+    const int last = parameters.sub_steps - 1;
+    if (parameters.first_damping == 1.0f || sub_step >= last) return 1.0f;
+    return pow(parameters.first_damping, (float)(last - sub_step) / (float)last);
+}
+
+// α as given where both factors are 1. The floor lets α = 1 be raised too.
+APSL_INLINE lanes effective_regularization(lanes given, float damping, float factor) {
+    const lanes alpha = given + (damping - 1.0f) * (given - 1.0f);
     return alpha + (factor - 1.0f) * fmax(alpha - 1.0f, (lanes)(0.05f));
 }
 

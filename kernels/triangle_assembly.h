@@ -50,10 +50,11 @@ typedef struct {
 
 // gradients[a], residual[a] = s (A − A⁰), damped_diagonal[a] = α D. `alpha` holds for all triangles, unless
 // `regularization` has one for each. Both come from order_values.
-APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active, float alpha, float adaptive_factor,
-                                                  __global const uint* triangles, __global const float4* predicted,
-                                                  __global apsl_gradients* gradients, __global float* residual,
-                                                  __global float* damped_diagonal, __global const float* rest_areas,
+APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active, float alpha, float damping,
+                                                  float adaptive_factor, __global const uint* triangles,
+                                                  __global const float4* predicted, __global apsl_gradients* gradients,
+                                                  __global float* residual, __global float* damped_diagonal,
+                                                  __global const float* rest_areas,
                                                   __global const float* regularization) {
     const apsl_range range = share_of(blocks_of(cloth), active);
     apsl_assembly_sums sums;
@@ -71,7 +72,7 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         (void)regularization;
         const lanes given = alpha;
 #endif
-        const lanes effective = effective_regularization(given, adaptive_factor);
+        const lanes effective = effective_regularization(given, damping, adaptive_factor);
         const lanes damped = effective * triangle.diagonal;
         const lanes scale = jacobi_scale(damped, rest_area);
         const lanes stretch = select((lanes)(0.0f), triangle.area - rest_area, scale > 0.0f);

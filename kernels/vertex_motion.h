@@ -67,7 +67,7 @@ APSL_INLINE void correct_velocities(apsl_cloth cloth, bool active, apsl_paramete
         const float3 before = load_velocity(velocities, i);
         // A vertex nothing moved gets exactly zero.
         const float3 correction = x.xyz - predicted_position(load_position(positions, i), before, parameters.time_step);
-        const float3 after = before + correction * parameters.inverse_time_step;
+        const float3 after = before + correction * (1.0f / parameters.time_step);
         // No triangle vouches for a vertex that is in none, nor for a velocity that overflows.
         if (all(isfinite(after))) vstore3(after, 0, velocities + (ulong)i * APSL_VELOCITY_STRIDE);
     }

@@ -30,6 +30,11 @@ void validate(const Parameters& p) {
     require(p.max_iterations >= 1, "max_iterations", p.max_iterations, "a whole number >= 1");
     require(p.adaptive_iterations >= 0, "adaptive_iterations", p.adaptive_iterations,
             "a whole number >= 0 (0 keeps the regularization as given)");
+    const float first = p.first_regularization;
+    require(std::isfinite(first) && (first == 0.0f || first > 1.0f), "first_regularization", first,
+            "0 (the same in every sub-step) or a finite number > 1");
+    require(first == 0.0f || p.regularization > 1.0f, "regularization", p.regularization,
+            "a number > 1 where first_regularization is given");
 }
 
 }  // namespace apsl

@@ -58,6 +58,7 @@ typedef struct apsl_limiter_options {
     uint32_t position_stride;            /* floats from one vertex to the next, >= 3 */
     uint32_t velocity_stride;            /* likewise */
     int32_t regularization_per_triangle; /* not 0: a regularization buffer is given with every call */
+    uint32_t kept_pressures;             /* sub-steps whose pressures the next call's solves start from */
 } apsl_limiter_options;
 
 /* apsl::Parameters: what may change from call to call. Begin with apsl_limiter_default_parameters(). */
@@ -69,6 +70,7 @@ typedef struct apsl_limiter_parameters {
     float tolerance;             /* in [0, 1), of a solve's residual */
     int32_t max_iterations;      /* >= 1, of a solve */
     int32_t adaptive_iterations; /* 0: alpha stays as given; else more iterations than this raise it */
+    float first_regularization;  /* 0: alpha is the same in every sub-step; else > 1, that of the first */
 } apsl_limiter_parameters;
 
 /* apsl::BufferView: 32-bit floats in a buffer of the caller's. */

@@ -38,6 +38,10 @@ struct Parameters {
     /// (α − 1 doubles, up to 1024-fold), and one that takes at most half of it lowers it again towards the given value
     /// (Section 4).
     std::int32_t adaptive_iterations = 0;
+    /// 0: α is the same in every sub-step. Otherwise > 1, the α of the first: from there to `regularization`, in the
+    /// last, α − 1 changes by the same factor from one sub-step to the next (docs/formulation.md). Needs
+    /// regularization > 1; a per-triangle α is that of the last sub-step and is scaled alike.
+    float first_regularization = 0.0f;
 };
 
 /// Throws Error(invalid_argument) naming the first field that is out of range or not finite.

@@ -6,6 +6,7 @@
 #include <apsl/topology.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -28,7 +29,9 @@ struct Buffers {
 template <class Real>
 class BasicStrainLimiter {
 public:
-    explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix = Matrix::consistent);
+    /// `kept_pressures`: as Options::kept_pressures of apsl::StrainLimiter.
+    explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix = Matrix::consistent,
+                                std::uint32_t kept_pressures = 0);
     ~BasicStrainLimiter();
     BasicStrainLimiter(BasicStrainLimiter&&) noexcept;
     BasicStrainLimiter& operator=(BasicStrainLimiter&&) noexcept;

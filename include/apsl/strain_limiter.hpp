@@ -31,6 +31,11 @@ struct Options {
     std::uint32_t velocity_stride = 3;
     /// A regularization buffer is given with every call.
     bool regularization_per_triangle = false;
+    /// The pressures of so many sub-steps of a call (4 B a triangle each; later sub-steps share the last) are kept, and
+    /// are the first guess for the solves of the next call: fewer CG iterations at small α, at the price of one product
+    /// with the matrix a solve, counted as an iteration. As many as there are sub-steps, or 0: solves start from zero.
+    /// Results then depend on the calls before, within the tolerance of the solves.
+    std::uint32_t kept_pressures = 0;
 };
 
 /// A place in a caller's buffer. The element stride is fixed in Options.

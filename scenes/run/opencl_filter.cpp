@@ -36,6 +36,7 @@ Options options_for(const StrainLimiting& settings) {
     options.apply = settings.apply;
     options.execution = settings.execution;
     options.regularization_per_triangle = !settings.regularization.empty();
+    options.kept_pressures = settings.kept_pressures;
     return options;
 }
 

@@ -14,6 +14,7 @@ namespace apsl::scenes {
 namespace {
 
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+constexpr std::int32_t kMaxKeptPressures = 1000;
 
 std::array<std::uint32_t, 2> counts(SceneObject& object, const std::string& key,
                                     const std::array<std::uint32_t, 2>& fallback,
@@ -186,6 +187,9 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
         static_cast<std::int32_t>(object.integer("max_iterations", parameters.max_iterations, 1, kMaxCount));
     parameters.adaptive_iterations =
         static_cast<std::int32_t>(object.integer("adaptive_iterations", parameters.adaptive_iterations, 0, kMaxCount));
+    parameters.first_regularization = static_cast<float>(
+        object.number("first_regularization", parameters.first_regularization, Range::at_least(0.0)));
+    settings.kept_pressures = static_cast<std::uint32_t>(object.integer("kept_pressures", 0, 0, kMaxKeptPressures));
     object.refuse_other_keys();
     try {
         validate(parameters);  // what 32-bit floats make of the numbers

@@ -6,7 +6,7 @@ namespace apsl::scenes {
 ReferenceFilter::ReferenceFilter(const ClothState& cloth, const StrainLimiting& settings)
     : parameters_(settings.parameters),
       regularization_(settings.regularization.begin(), settings.regularization.end()),
-      limiter_(cloth.topology, settings.matrix) {
+      limiter_(cloth.topology, settings.matrix, settings.kept_pressures) {
 }
 
 Stats ReferenceFilter::filter(ClothState& cloth) {

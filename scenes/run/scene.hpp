@@ -71,6 +71,7 @@ struct StrainLimiting {
     Matrix matrix = Matrix::consistent;
     Apply apply = Apply::matrix_free;
     Execution execution = Execution::automatic;
+    std::uint32_t kept_pressures = 0;   ///< sub-steps whose pressures the next step's solves start from
     Parameters parameters;              ///< time_step is the scene's
     std::vector<float> regularization;  ///< α ≥ 1, [T]; empty where one number does for all
 };

@@ -5,11 +5,30 @@
 #include <limits>
 
 namespace apsl::reference {
+namespace {
+
+/// Scales the guess in `lambda` and leaves b − A λ in `r`.
+template <class Real>
+void start_from_guess(const SparseMatrix<Real>& A, const TriangleVector<Real>& b, TriangleVector<Real>& product,
+                      TriangleVector<Real>& r, TriangleVector<Real>& lambda) {
+    product.noalias() = A * lambda;
+    const Real curvature = lambda.dot(product);
+    const Real scale = b.dot(lambda) / curvature;
+    if (curvature > Real(0) && std::isfinite(scale)) {
+        lambda *= scale;
+        r = b - scale * product;
+    } else {
+        lambda.setZero(b.size());
+        r = b;
+    }
+}
+
+}  // namespace
 
 template <class Real>
 SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const TriangleVector<Real>& b, Real tolerance,
                                      int max_iterations, ConjugateGradientScratch<Real>& scratch,
-                                     TriangleVector<Real>& lambda) {
+                                     TriangleVector<Real>& lambda, bool guessed) {
     constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
     auto& [inverse_diagonal, r, z, p, q] = scratch;
 
@@ -18,8 +37,12 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
     for (Real& inverse : inverse_diagonal)
         if (!std::isfinite(inverse)) inverse = Real(0);
 
-    lambda.setZero(b.size());
-    r = b;
+    if (guessed) {
+        start_from_guess(A, b, q, r, lambda);
+    } else {
+        lambda.setZero(b.size());
+        r = b;
+    }
     z = inverse_diagonal.cwiseProduct(r);
     p = z;
     Real rz = r.dot(z);
@@ -28,10 +51,11 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
     const auto norm = [&inverse_diagonal](const TriangleVector<Real>& v) {
         return std::sqrt((inverse_diagonal.array() > Real(0)).select(v.array().square(), Real(0)).sum());
     };
-    const Real norm_b = norm(r);
+    const Real norm_b = norm(b);
     if (norm_b == Real(0)) return {0, Real(0), true};
 
-    SolveResult<Real> result{0, Real(1), false};
+    SolveResult<Real> result{0, norm(r) / norm_b, false};
+    if (result.relative_residual <= tolerance) return {0, result.relative_residual, true};
     Real pDp = rz;
     while (result.iterations < max_iterations) {
         q.noalias() = A * p;
@@ -61,8 +85,8 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
 }
 
 template SolveResult<double> conjugate_gradient(const SparseMatrix<double>&, const TriangleVector<double>&, double, int,
-                                                ConjugateGradientScratch<double>&, TriangleVector<double>&);
+                                                ConjugateGradientScratch<double>&, TriangleVector<double>&, bool);
 template SolveResult<float> conjugate_gradient(const SparseMatrix<float>&, const TriangleVector<float>&, float, int,
-                                               ConjugateGradientScratch<float>&, TriangleVector<float>&);
+                                               ConjugateGradientScratch<float>&, TriangleVector<float>&, bool);
 
 }  // namespace apsl::reference

@@ -9,6 +9,7 @@
 #include "reference/displacements.hpp"
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
+#include "reference/scheduled_regularization.hpp"
 
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
@@ -63,6 +64,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     TriangleVector<Real> lambda;
     std::vector<Real> effective_regularization;  // α, [T]
     Real adaptive_factor = Real(1);              // outlives the call
+    std::vector<TriangleVector<Real>> kept;      // √(α D) λ of the sub-steps of the call before
     ConjugateGradientScratch<Real> scratch;
     Stats stats{};
 
@@ -84,14 +86,24 @@ struct BasicStrainLimiter<Real>::Implementation {
         for (std::size_t a = 0; a < geometry.size(); ++a) {
             const Real given = buffers.regularization.empty() ? static_cast<Real>(parameters.regularization)
                                                               : buffers.regularization[a];
-            effective_regularization[a] = raised_regularization(given, adaptive_factor);
+            effective_regularization[a] =
+                raised_regularization(scheduled_regularization(given, parameters, stats.sub_steps), adaptive_factor);
         }
         regularize(std::span<const Real>(effective_regularization), G);
 
         area_excess.resize(static_cast<Eigen::Index>(geometry.size()));
         for (std::size_t a = 0; a < geometry.size(); ++a) area_excess[a] = geometry[a].area - buffers.rest_areas[a];
-        return conjugate_gradient(G, area_excess, static_cast<Real>(parameters.tolerance), parameters.max_iterations,
-                                  scratch, lambda);
+        const auto tolerance = static_cast<Real>(parameters.tolerance);
+        if (kept.empty())
+            return conjugate_gradient(G, area_excess, tolerance, parameters.max_iterations, scratch, lambda);
+
+        TriangleVector<Real>& guess = kept[std::min(static_cast<std::size_t>(stats.sub_steps), kept.size() - 1)];
+        const TriangleVector<Real> scale = G.diagonal().cwiseSqrt();
+        lambda = (scale.array() > Real(0)).select(guess.cwiseQuotient(scale), Real(0));
+        SolveResult<Real> result =
+            conjugate_gradient(G, area_excess, tolerance, parameters.max_iterations, scratch, lambda, true);
+        guess = scale.cwiseProduct(lambda);
+        return result;
     }
 
     void displace(std::span<const Real> inverse_masses) {
@@ -132,7 +144,8 @@ struct BasicStrainLimiter<Real>::Implementation {
             if (!std::isfinite(result.relative_residual)) return;
             displace(buffers.inverse_masses);
             ++stats.sub_steps;
-            stats.cg_iterations += result.iterations;
+            stats.cg_iterations +=
+                result.iterations + (kept.empty() ? 0 : 1);  // the product with a guess costs as much
             stats.residual = std::max(stats.residual, static_cast<float>(result.relative_residual));
             all_converged = all_converged && result.converged;
             adaptive_factor = adapted_factor(adaptive_factor, parameters, result.iterations, result.converged);
@@ -147,7 +160,8 @@ struct BasicStrainLimiter<Real>::Implementation {
 };
 
 template <class Real>
-BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix)
+BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix,
+                                             std::uint32_t kept_pressures)
     : implementation_(std::make_unique<Implementation>()) {
     if (!topology) throw Error(ErrorCode::invalid_argument, "topology is null, expected one from Topology::build");
     if (matrix != Matrix::consistent && matrix != Matrix::printed)
@@ -156,6 +170,9 @@ BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> top
     CsrPattern pattern = topology->csr_pattern(matrix);
     implementation_->topology = std::move(topology);
     implementation_->matrix = matrix;
+    implementation_->kept.assign(
+        kept_pressures,
+        TriangleVector<Real>::Zero(static_cast<Eigen::Index>(implementation_->topology->triangle_count())));
     implementation_->G = zero_matrix<Real>(pattern);
     implementation_->shared = std::move(pattern.shared);
 }
@@ -174,8 +191,9 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
     const auto rows = static_cast<std::size_t>(i.G.rows());
     return entries * (sizeof(Real) + sizeof(int)) + (rows + 1) * sizeof(int) + bytes(i.shared) + bytes(i.predicted) +
            bytes(i.moved) + bytes(i.correction) + bytes(i.geometry) + bytes(i.area_excess) + bytes(i.lambda) +
-           bytes(i.effective_regularization) + bytes(i.scratch.inverse_diagonal) + bytes(i.scratch.residual) +
-           bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) + bytes(i.scratch.product);
+           bytes(i.effective_regularization) + i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) +
+           bytes(i.scratch.inverse_diagonal) + bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) +
+           bytes(i.scratch.direction) + bytes(i.scratch.product);
 }
 
 template <class Real>

@@ -16,6 +16,7 @@ AXES = [
     [{"APSL_MATRIX": 0}, {"APSL_MATRIX": 1}],
     [{"APSL_POSITION_STRIDE": 3, "APSL_VELOCITY_STRIDE": 3}, {"APSL_POSITION_STRIDE": 4, "APSL_VELOCITY_STRIDE": 4}],
     [{"APSL_REGULARIZATION_PER_TRIANGLE": 0}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1}],
+    [{"APSL_KEPT_PRESSURES": 0}, {"APSL_KEPT_PRESSURES": 8}],
     # What the patches of 512 triangles of most meshes have; host/ passes the number of the meshes at hand.
     [{"APSL_PATCH_VERTICES": 400}],
 ]

@@ -154,6 +154,7 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.position_stride == options.position_stride);
     CHECK(o.velocity_stride == options.velocity_stride);
     CHECK(o.regularization_per_triangle == 0);
+    CHECK(o.kept_pressures == options.kept_pressures);
     const apsl_limiter_parameters p = apsl_limiter_default_parameters();
     const Parameters parameters;
     CHECK(p.time_step == parameters.time_step);
@@ -163,4 +164,5 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(p.tolerance == parameters.tolerance);
     CHECK(p.max_iterations == parameters.max_iterations);
     CHECK(p.adaptive_iterations == parameters.adaptive_iterations);
+    CHECK(p.first_regularization == parameters.first_regularization);
 }

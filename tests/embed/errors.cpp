@@ -81,6 +81,7 @@ TEST_CASE("enqueue refuses parameters out of range, and queues nothing", "[embed
     check_invalid("time_step is nan", parameters({.time_step = nan}));
     check_invalid("time_step is inf", parameters({.time_step = infinity}));
     check_invalid("adaptive_iterations is -1", parameters({.adaptive_iterations = -1}));
+    check_invalid("first_regularization is 1, expected 0", parameters({.first_regularization = 1.0f}));
     check_invalid("sub_steps is -1", parameters({.sub_steps = -1}));
     check_invalid("target_area_change is -0.1", parameters({.target_area_change = -0.1f}));
     check_invalid("target_area_change is nan", parameters({.target_area_change = nan}));

@@ -205,6 +205,71 @@ TEST_CASE("adaptive alpha: raised, restored and kept between calls as the refere
     }
 }
 
+TEST_CASE("alpha that changes over the sub-steps: as the reference does it", "[filter]") {
+    const MovingCloth cloth = moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 2);
+    for (const auto& [first, last] : {std::pair{1.1f, 1.6f}, std::pair{2.0f, 1.2f}}) {
+        Parameters parameters = tight;
+        parameters.regularization = last;
+        parameters.first_regularization = first;
+        for (Options options : variants) {
+            if (options.matrix == Matrix::printed) continue;  // amplifies what differs, see docs/formulation.md
+            for (const bool per_triangle : {false, true}) {
+                options.regularization_per_triangle = per_triangle;
+                CAPTURE(variant_name(options), first, last, per_triangle);
+                check_against_reference(cloth, options, parameters);
+            }
+        }
+        const Filtered scheduled = filter_on_device(cloth, one_group, parameters);
+        parameters.first_regularization = 0.0f;
+        const Filtered fixed = filter_on_device(cloth, one_group, parameters);
+        CHECK(difference(scheduled.velocities, fixed.velocities) > 1e-3 * norm(fixed.velocities));
+    }
+}
+
+TEST_CASE("kept pressures: the guess a call starts from is the reference's, and a broken call leaves no harm",
+          "[filter]") {
+    MovingCloth cloth = moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 2);
+    const double first_coordinate = cloth.positions[40];
+    // More sub-steps than kept pressures: the last two share a place.
+    const Parameters parameters{.regularization = 1.3f,
+                                .sub_steps = 3,
+                                .tolerance = 1e-3f,
+                                .max_iterations = 100,
+                                .first_regularization = 1.05f};
+    for (Options options : variants) {
+        if (options.matrix == Matrix::printed) continue;  // amplifies what differs, see docs/formulation.md
+        options.kept_pressures = 2;
+        for (const std::uint32_t work_group_size : {1u, 64u}) {
+            options.work_group_size = work_group_size;
+            CAPTURE(variant_name(options));
+            StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+            reference::StrainLimiter expected(cloth.topology, options.matrix, options.kept_pressures);
+            int cold = 0, warm = 0;
+            for (const int call : {0, 1, 2, 3}) {
+                cloth.positions[40] = call == 2 ? std::nan("") : first_coordinate;
+                const CallerBuffers buffers({&cloth, 1}, options);
+                const Stats got = filter(limiter, buffers, {&parameters, 1})[0];
+                std::vector<double> velocities = cloth.velocities;
+                expected.enqueue({cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, {}}, parameters);
+                const Stats want = expected.read_stats();
+                CAPTURE(call);
+                CHECK(got.status == (call == 2 ? Status::diverged : Status::ok));
+                if (call == 2) continue;
+                CHECK(std::abs(got.cg_iterations - want.cg_iterations) <= want.sub_steps);
+                (call == 0 ? cold : warm) = got.cg_iterations;
+                std::vector<double> correction(velocities);
+                for (std::size_t n = 0; n < correction.size(); ++n) correction[n] -= cloth.velocities[n];
+                const std::vector<float> read = buffers.read_velocities();
+                const std::vector<double> filtered(read.begin(), read.end());
+                CHECK(difference(filtered, velocities) <= 0.02 * norm(correction));
+            }
+            // The same call again: the first solve has nothing left to do; the third's guess is the second's.
+            CHECK(3 * warm < 2 * cold);
+        }
+    }
+    cloth.positions[40] = first_coordinate;
+}
+
 TEST_CASE("several cloths in one limiter: as each one alone", "[filter]") {
     const std::vector<MovingCloth> cloths{moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 1),
                                           moving_cloth(right_triangle(), 2), moving_cloth(tetrahedron(), 3),

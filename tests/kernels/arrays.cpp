@@ -45,8 +45,10 @@ std::vector<ScaledSolve> solves_of(std::span<const Cloth> cloths, Matrix matrix,
 }
 
 apsl_parameters device_parameters(const Parameters& p) {
-    return {p.time_step, 1.0f / p.time_step, p.regularization,     p.target_area_change, p.tolerance * p.tolerance,
-            p.sub_steps, p.max_iterations,   p.adaptive_iterations};
+    const float first_damping =
+        p.first_regularization > 0.0f ? (p.first_regularization - 1.0f) / (p.regularization - 1.0f) : 1.0f;
+    return {p.time_step, p.regularization, first_damping,        p.target_area_change, p.tolerance * p.tolerance,
+            p.sub_steps, p.max_iterations, p.adaptive_iterations};
 }
 
 // ‖r‖² of r = √(α D) r̄.

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 using namespace apsl;
 using namespace apsl::test;
@@ -183,6 +184,30 @@ TEST_CASE("assemble_gradients: alpha as the adaptive factor raises it", "[assemb
         for (const std::uint32_t place : arrays.triangle_places[0])
             CHECK(std::abs(static_cast<double>(arrays.gradients.read()[place].shift) - (raised - 1.0) / raised) <=
                   elementwise_tolerance(4));
+    }
+}
+
+TEST_CASE("assemble_gradients: alpha as the schedule has it in each sub-step", "[assemble_gradients]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(50), 1)};
+    const Parameters rising{.regularization = 1.2f, .sub_steps = 3, .first_regularization = 1.002f};
+    const Parameters falling{.regularization = 1.02f, .sub_steps = 3, .first_regularization = 3.0f};
+    const Parameters single{.regularization = 1.2f, .sub_steps = 1, .first_regularization = 1.002f};
+    const Parameters fixed{.regularization = 1.2f, .sub_steps = 3};
+    for (const auto& [parameters, sub_step, expected] : {std::tuple{rising, 0, 1.002},
+                                                         {rising, 1, 1.02},
+                                                         {rising, 2, 1.2},
+                                                         {falling, 0, 3.0},
+                                                         {falling, 1, 1.2},
+                                                         {falling, 2, 1.02},
+                                                         {single, 0, 1.2},
+                                                         {fixed, 0, 1.2},
+                                                         {fixed, 2, 1.2}}) {
+        CAPTURE(parameters.first_regularization, sub_step, expected);
+        Arrays arrays(cloths, Matrix::printed, parameters, 2);
+        launch::assemble_gradients(arrays, {}, sub_step);
+        for (const std::uint32_t place : arrays.triangle_places[0])
+            CHECK(std::abs(static_cast<double>(arrays.gradients.read()[place].shift) - (expected - 1.0) / expected) <=
+                  elementwise_tolerance(8));
     }
 }
 

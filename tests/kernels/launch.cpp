@@ -87,10 +87,10 @@ void order_triangle_values(Arrays& a, const Build& build) {
     run(k, a.groups, build, a.cloth_count());
 }
 
-void assemble_gradients(Arrays& a, const Build& build) {
+void assemble_gradients(Arrays& a, const Build& build, int sub_step) {
     const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "assemble_gradients");
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients, a.residual,
-                  a.damped_diagonal, a.ordered_rest_areas, a.ordered_regularization);
+                  a.damped_diagonal, a.ordered_rest_areas, a.ordered_regularization, cl_int{sub_step});
     run(k, a.groups, build, a.cloth_count());
 }
 
@@ -140,6 +140,18 @@ void matrix_free_apply_dot(Arrays& a, const Build& build, int iteration) {
     run(k, a.groups, build, a.cloth_count());
 }
 
+void measure_guess(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "first_guess.cl", "measure_guess");
+    set_arguments(k, 0, a.cloths, a.states, a.partials, a.residual, a.pressure);
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void start_from_guess(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "first_guess.cl", "start_from_guess");
+    set_arguments(k, 0, a.cloths, a.states, a.partials, a.residual, a.damped_diagonal, a.product, a.pressure);
+    run(k, a.groups, build, a.cloth_count());
+}
+
 void cg_update(Arrays& a, const Build& build, int iteration) {
     const host::Kernel& k = kernel(a, build, "cg_update.cl", "cg_update");
     set_arguments(k, 0, a.cloths, a.states, a.partials, a.residual, a.damped_diagonal, a.product, a.direction,
@@ -177,7 +189,8 @@ void filter_in_one_group(Arrays& a, const Build& build) {
                   a.ordered_rest_areas, a.ordered_regularization, a.caller_positions,
                   cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset},
                   a.inverse_masses, cl_ulong{a.array_offset}, a.rest_areas, cl_ulong{a.array_offset},
-                  build.alpha_per_triangle ? a.regularization : a.rest_areas, cl_ulong{a.array_offset});
+                  build.alpha_per_triangle ? a.regularization : a.rest_areas, cl_ulong{a.array_offset},
+                  cl_uint{a.adjacency.triangle_count});
     run(k, 1, build, a.cloth_count());
 }
 

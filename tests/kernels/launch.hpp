@@ -29,13 +29,15 @@ void set_parameters(Arrays& arrays, const Build& build, const apsl_parameter_blo
                     std::uint32_t count);
 void predict_positions(Arrays& arrays, const Build& build);
 void order_triangle_values(Arrays& arrays, const Build& build);
-void assemble_gradients(Arrays& arrays, const Build& build);
+void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
 void measure_area_change(Arrays& arrays, const Build& build);
 void begin_solve(Arrays& arrays, const Build& build, int sub_step);
 void end_call(Arrays& arrays, const Build& build);
 void assemble_pressure_csr(Arrays& arrays, const Build& build);
 void csr_spmv_dot(Arrays& arrays, const Build& build, int iteration);
 void matrix_free_apply_dot(Arrays& arrays, const Build& build, int iteration);
+void measure_guess(Arrays& arrays, const Build& build);
+void start_from_guess(Arrays& arrays, const Build& build);
 void cg_update(Arrays& arrays, const Build& build, int iteration);
 /// `iterations`: those done before.
 void finish_solve(Arrays& arrays, const Build& build, int iterations);

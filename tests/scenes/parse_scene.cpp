@@ -60,6 +60,8 @@ TEST_CASE("a stage that is named without values takes the defaults of the stage"
     CHECK(scene.strain_limiting->parameters.tolerance == defaults.tolerance);
     CHECK(scene.strain_limiting->parameters.max_iterations == defaults.max_iterations);
     CHECK(scene.strain_limiting->parameters.adaptive_iterations == defaults.adaptive_iterations);
+    CHECK(scene.strain_limiting->parameters.first_regularization == defaults.first_regularization);
+    CHECK(scene.strain_limiting->kept_pressures == 0);
     CHECK(scene.strain_limiting->execution == Execution::automatic);
     CHECK(scene.strain_limiting->regularization.empty());
     CHECK(scene.colliders.size() == 3);
@@ -76,7 +78,7 @@ TEST_CASE("every value is taken from where it stands") {
         "integrator": {"stand_alone": {"bend_stiffness": 50, "damping": 0}},
         "strain_limiting": {"matrix": "printed", "apply": "assembled_csr", "regularization": 2.5, "sub_steps": 3,
                             "target_area_change": 0.01, "tolerance": 0.001, "max_iterations": 9,
-                            "adaptive_iterations": 6, "execution": "many_groups"},
+                            "adaptive_iterations": 6, "first_regularization": 1.5, "kept_pressures": 3, "execution": "many_groups"},
         "colliders": [{"sphere": {"center": [0, 1, 0], "radius": 0.2, "friction": 0.5, "thickness": 0.01}},
                       {"plane": {"point": [0, -1, 0], "normal": [0, 2, 0]}},
                       {"capsule": {"a": [0, 0, 0], "b": [0, 1, 0], "radius": 0.05}}]})");
@@ -118,6 +120,8 @@ TEST_CASE("every value is taken from where it stands") {
     CHECK(limiting.parameters.tolerance == 0.001f);
     CHECK(limiting.parameters.max_iterations == 9);
     CHECK(limiting.parameters.adaptive_iterations == 6);
+    CHECK(limiting.parameters.first_regularization == 1.5f);
+    CHECK(limiting.kept_pressures == 3);
     CHECK(limiting.execution == Execution::many_groups);
 
     const Sphere& sphere = std::get<Sphere>(scene.colliders[0]);
@@ -159,7 +163,8 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "integrator, strain_limiting, colliders"},
         {R"("strain_limiting": {"alpha": 2})",
          "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, regularization, "
-         "sub_steps, target_area_change, tolerance, max_iterations, adaptive_iterations"},
+         "sub_steps, target_area_change, tolerance, max_iterations, adaptive_iterations, first_regularization, "
+         "kept_pressures"},
         {R"("strain_limiting": {"regularization": 0.99})",
          "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
         {R"("strain_limiting": {"regularization": [1, 0.5]})",
@@ -170,6 +175,11 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "strain_limiting.max_iterations: expected a whole number from 1"},
         {R"("strain_limiting": {"adaptive_iterations": -1})",
          "strain_limiting.adaptive_iterations: expected a whole number from 0"},
+        {R"("strain_limiting": {"first_regularization": 0.5})",
+         "strain_limiting: first_regularization is 0.5, expected 0 (the same in every sub-step) or a finite number > "
+         "1"},
+        {R"("strain_limiting": {"kept_pressures": 1001})",
+         "strain_limiting.kept_pressures: expected a whole number from 0 to 1000, got 1001"},
         {R"("strain_limiting": {"execution": "one_group", "apply": "assembled_csr"})",
          "strain_limiting.execution: one_group needs the consistent matrix, matrix_free"},
         {R"("strain_limiting": {"target_area_change": -0.1})",

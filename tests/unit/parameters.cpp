@@ -40,12 +40,22 @@ TEST_CASE("each parameter out of its range is named, with its value and its rang
           "target_area_change is -0.25, expected a finite number >= 0 (a fraction of the rest area)");
     CHECK(message_of(&Parameters::tolerance, 1.0f) == "tolerance is 1, expected a number in [0, 1)");
     CHECK(message_of(&Parameters::max_iterations, 0) == "max_iterations is 0, expected a whole number >= 1");
+    CHECK(message_of(&Parameters::first_regularization, 1.0f) ==
+          "first_regularization is 1, expected 0 (the same in every sub-step) or a finite number > 1");
+}
+
+TEST_CASE("a schedule of alpha has no end at 1") {
+    Parameters parameters{.regularization = 1.0f, .first_regularization = 2.0f};
+    CHECK_THROWS_WITH(validate(parameters),
+                      "regularization is 1, expected a number > 1 where first_regularization is given");
+    parameters.regularization = 1.01f;
+    CHECK_NOTHROW(validate(parameters));
 }
 
 TEST_CASE("numbers that are not finite are refused in every field") {
     for (const float bad : {not_a_number, infinity, -infinity})
         for (const auto field : {&Parameters::time_step, &Parameters::regularization, &Parameters::target_area_change,
-                                 &Parameters::tolerance})
+                                 &Parameters::tolerance, &Parameters::first_regularization})
             CHECK(message_of(field, bad) != "no error");
 }
 

@@ -181,3 +181,34 @@ TEST_CASE("numbers that are not finite are told, not iterated on") {
         CHECK(std::isnan(solved.relative_residual));
     }
 }
+
+TEST_CASE("a first guess: any multiple of the solution ends the solve at once") {
+    const System system = wavy_grid_system(9, 1.2);
+    const TriangleVector<double> solution = solve<double>(system.A, system.b, 1e-12, 500).lambda;
+    ConjugateGradientScratch<double> scratch;
+    for (const double multiple : {1.0, -3.0, 1e-6}) {
+        TriangleVector<double> lambda = multiple * solution;
+        const auto result = conjugate_gradient<double>(system.A, system.b, 1e-8, 50, scratch, lambda, true);
+        CHECK(result.converged);
+        CHECK(result.iterations == 0);
+        CHECK(result.relative_residual <= 1e-8);
+        CHECK((lambda - solution).norm() <= 1e-8 * solution.norm());
+    }
+}
+
+TEST_CASE("a first guess that is zero, not finite or worthless is none") {
+    const System system = wavy_grid_system(9, 1.2);
+    const auto plain = solve<double>(system.A, system.b, 1e-3, 50);
+    ConjugateGradientScratch<double> scratch;
+    for (const double value :
+         {0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        TriangleVector<double> lambda = TriangleVector<double>::Constant(system.b.size(), value);
+        const auto result = conjugate_gradient<double>(system.A, system.b, 1e-3, 50, scratch, lambda, true);
+        CHECK(result.iterations == plain.iterations);
+        CHECK(lambda == plain.lambda);
+    }
+    // A wrong one is no obstacle.
+    TriangleVector<double> lambda = TriangleVector<double>::Constant(system.b.size(), 1e9);
+    CHECK(conjugate_gradient<double>(system.A, system.b, 1e-3, 50, scratch, lambda, true).converged);
+    CHECK((system.b - system.A * lambda).norm() <= 2e-3 * system.b.norm());
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// A first guess for a solve: what the sub-step of the same number found in the call before, y₀, scaled by the t that
+// brings it nearest to the solution in the norm of A. So scaled, no guess is worse than none, however old.
+// Reference: apsl::reference::start_from_guess.
+#ifndef APSL_FIRST_GUESS_H
+#define APSL_FIRST_GUESS_H
+
+#include "layout.h"
+#include "work_group.h"
+
+// Sub-steps of a call whose pressures are kept; later ones share the last place. 0: every solve starts from nothing.
+#ifndef APSL_KEPT_PRESSURES
+#define APSL_KEPT_PRESSURES 0
+#endif
+
+// This work-item's part of r̄·y₀.
+APSL_INLINE float guess_dot(apsl_cloth cloth, bool active, __global const float4* residual,
+                            __global const float4* pressure) {
+    const uint begin = cloth.triangle_begin / 4u;
+    const apsl_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
+    float4 sum = (float4)(0.0f);
+    for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE)
+        sum += residual[begin + n] * pressure[begin + n];
+    return sum.x + sum.y + sum.z + sum.w;
+}
+
+// t = r̄·y₀ / y₀·Ay₀; 0, which drops the guess, where that is no number.
+APSL_INLINE float guess_scale(float dot, float curvature) {
+    const float scale = dot / curvature;
+    return curvature > 0.0f && isfinite(scale) ? scale : 0.0f;
+}
+
+// y = t y₀, r = b − t A y₀ with A y₀ in `product`; this work-item's part of ‖r‖² and of r̄·r̄.
+APSL_INLINE float2 scale_guess(apsl_cloth cloth, bool active, float scale, __global float4* residual,
+                               __global const float4* damped_diagonal, __global const float4* product,
+                               __global float4* pressure) {
+    const uint begin = cloth.triangle_begin / 4u;
+    const apsl_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
+    float4 squares = (float4)(0.0f), scaled_squares = (float4)(0.0f);
+    for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE) {
+        const uint i = begin + n;
+        float4 r = residual[i], y = (float4)(0.0f);
+        if (scale != 0.0f) {  // uniform; a dropped guess and its product may be anything
+            y = scale * pressure[i];
+            r -= scale * product[i];
+            residual[i] = r;
+        }
+        pressure[i] = y;
+        squares += r * r * damped_diagonal[i];
+        scaled_squares += r * r;
+    }
+    return (float2)(squares.x + squares.y + squares.z + squares.w,
+                    scaled_squares.x + scaled_squares.y + scaled_squares.z + scaled_squares.w);
+}
+
+#endif
