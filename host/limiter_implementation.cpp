@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 
 namespace apsl {
@@ -29,9 +30,11 @@ constexpr std::size_t gradient_bytes = 32;
 }
 
 apsl_parameters device_parameters(const Parameters& p) {
-    const float first_damping =
-        p.first_regularization > 0.0f ? (p.first_regularization - 1.0f) / (p.regularization - 1.0f) : 1.0f;
-    return {p.time_step, p.regularization, first_damping,        p.target_area_change, p.tolerance * p.tolerance,
+    const bool scheduled = p.first_regularization > 0.0f && p.sub_steps > 1;
+    const float damping_step = scheduled ? std::log2((p.first_regularization - 1.0f) / (p.regularization - 1.0f)) /
+                                               static_cast<float>(p.sub_steps - 1)
+                                         : 0.0f;
+    return {p.time_step, p.regularization, damping_step,         p.target_area_change, p.tolerance * p.tolerance,
             p.sub_steps, p.max_iterations, p.adaptive_iterations};
 }
 
@@ -129,7 +132,7 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     direction_product = buffer(triangle_count * sizeof(float));
     const std::size_t slots = std::max<std::size_t>(options.kept_pressures, 1);
     for (std::size_t n = 0; n < (one_group() ? 1 : slots); ++n)
-        pressures.push_back(zeroed_buffer(triangle_count * (one_group() ? slots : 1)));
+        pressures.push_back(zeroed_buffer(triangle_count * (one_group() ? 1 + options.kept_pressures : 1)));
 }
 
 void StrainLimiter::Implementation::create_kernels() {

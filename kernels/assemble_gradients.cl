@@ -17,8 +17,9 @@ APSL_KERNEL void assemble_gradients(__global const apsl_cloth* cloths, __global 
     const uint c = (uint)get_group_id(1);
     const apsl_assembly_sums sums =
         assemble_triangles(cloths[c], !states[c].stopped, parameters[c].regularization,
-                           scheduled_damping(parameters[c], sub_step), states[c].adaptive_factor, triangles, predicted,
-                           gradients, residual, damped_diagonal, rest_areas, regularization);
+                           scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_step),
+                           states[c].adaptive_factor, triangles, predicted, gradients, residual, damped_diagonal,
+                           rest_areas, regularization);
     store_area_partials(sums.areas, partials, scratch);
     store_partial(partials, APSL_PARTIAL_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.squares), scratch));
     store_partial(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.scaled_squares), scratch));

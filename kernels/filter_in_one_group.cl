@@ -37,7 +37,8 @@ APSL_KERNEL void filter_in_one_group(
     for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
         const apsl_assembly_sums sums = assemble_triangles(
-            cloths[c], true, parameters[c].regularization, scheduled_damping(parameters[c], stats.sub_steps), factor,
+            cloths[c], true, parameters[c].regularization,
+            scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - stats.sub_steps), factor,
             triangles, predicted, gradients, residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
         const float squared_change = group_sum(sum_of_lanes(sums.areas.squared_change), scratch);
         const float measured = group_sum(sum_of_lanes(sums.areas.measured), scratch);
@@ -52,32 +53,18 @@ APSL_KERNEL void filter_in_one_group(
                    stats.max_area_change > parameters[c].target_area_change;
         if (going_on) {
             group_memory_barrier();
-#if APSL_KEPT_PRESSURES > 0
-            // One array a sub-step; later sub-steps share the last.
-            __global float* y = pressure + (ulong)min(stats.sub_steps, APSL_KEPT_PRESSURES - 1) * pressure_stride;
-            const float dot =
-                group_sum(guess_dot(cloths[c], true, (__global float4*)residual, (__global float4*)y), scratch);
-            const float curvature =
-                group_sum(multiply_patches(cloths[c], true, patches, patch_vertices, local_triangles, corner_offsets,
-                                           corners, gradients, y, product, forces),
-                          scratch);
-            group_memory_barrier();
-            const float2 guessed =
-                scale_guess(cloths[c], true, guess_scale(dot, curvature), (__global float4*)residual,
-                            (__global float4*)damped_diagonal, (__global float4*)product, (__global float4*)y);
-            solve.residual = group_sum(guessed.x, scratch);
-            solve.scaled_residual = group_sum(guessed.y, scratch);
-            stats.cg_iterations += 1;  // the product with a guess costs as much
-            group_memory_barrier();
-#else
-            __global float* y = pressure;
-            (void)pressure_stride;
-#endif
-            iterate_in_group(&solve, parameters + c, cloths + c, patches, patch_vertices, local_triangles,
-                             corner_offsets, corners, gradients, residual, damped_diagonal, product, direction,
-                             direction_product, y, forces, scratch);
+            if (APSL_KEPT_PRESSURES > 0) {
+                copy_pressures(cloths[c], pressure, pressure + kept_place(stats.sub_steps, pressure_stride));
+                stats.cg_iterations += 1;  // the product with a guess costs as much
+                group_memory_barrier();
+            }
+            iterate_in_group(&solve, APSL_KEPT_PRESSURES > 0, parameters + c, cloths + c, patches, patch_vertices,
+                             local_triangles, corner_offsets, corners, gradients, residual, damped_diagonal, product,
+                             direction, direction_product, pressure, forces, scratch);
+            if (APSL_KEPT_PRESSURES > 0)
+                copy_pressures(cloths[c], pressure + kept_place(stats.sub_steps, pressure_stride), pressure);
             displace_vertices(cloths[c], APSL_KEPT_PRESSURES > 0 || solve.iterations > 0, corner_offsets, corners,
-                              gradients, y, predicted);
+                              gradients, pressure, predicted);
             const bool converged = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
             factor = adapted_factor(factor, parameters[c], solve.iterations, converged);
             stats.sub_steps += 1;

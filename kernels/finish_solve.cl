@@ -29,9 +29,9 @@ APSL_KERNEL void finish_solve(__global const apsl_cloth* cloths, __global const 
     solve.previous_scaled_residual = states[c].scaled_residual[1];
     solve.previous_step = states[c].step[1];
     if (unfinished) {  // uniform: the same for all work-items of the group
-        iterate_in_group(&solve, parameters + c, cloths + c, patches, patch_vertices, local_triangles, corner_offsets,
-                         corners, gradients, residual, damped_diagonal, product, direction, direction_product, pressure,
-                         forces, scratch);
+        iterate_in_group(&solve, false, parameters + c, cloths + c, patches, patch_vertices, local_triangles,
+                         corner_offsets, corners, gradients, residual, damped_diagonal, product, direction,
+                         direction_product, pressure, forces, scratch);
         for (uint g = (uint)get_local_id(0); g < groups; g += APSL_WORK_GROUP_SIZE)
             partials_of(partials, APSL_PARTIAL_RESIDUAL_EVEN, groups)[g] = g == 0 ? solve.residual : 0.0f;
         if (get_local_id(0) == 0) states[c].solve_iterations = solve.iterations;

@@ -13,6 +13,18 @@
 #define APSL_KEPT_PRESSURES 0
 #endif
 
+// Where filter_in_one_group keeps a sub-step's pressures: one array each, behind those at work. Copied, since a pointer
+// that changes with the sub-step would be held in scalar registers through all of the solve.
+APSL_INLINE ulong kept_place(int sub_step, uint stride) {
+    return (ulong)(1 + min(sub_step, APSL_KEPT_PRESSURES - 1)) * stride;
+}
+
+APSL_INLINE void copy_pressures(apsl_cloth cloth, __global float* to, __global const float* from) {
+    const apsl_range range = share_of(cloth.triangle_count, true);
+    for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE)
+        to[cloth.triangle_begin + n] = from[cloth.triangle_begin + n];
+}
+
 // This work-item's part of r̄·y₀.
 APSL_INLINE float guess_dot(apsl_cloth cloth, bool active, __global const float4* residual,
                             __global const float4* pressure) {

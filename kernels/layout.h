@@ -32,7 +32,7 @@ typedef struct {
 typedef struct {
     float time_step;           // s
     float regularization;      // α, of the last sub-step
-    float first_damping;       // (α − 1) of the first sub-step over that of the last; 1 where α stays
+    float damping_step;        // log2 of (α − 1) of a sub-step over that of the next; 0 where α stays
     float target_area_change;  // |A − A⁰| / A⁰
     float tolerance_squared;
     apsl_int sub_steps;

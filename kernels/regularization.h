@@ -12,11 +12,9 @@
 #define APSL_REGULARIZATION_PER_TRIANGLE 0
 #endif
 
-// What the schedule multiplies α − 1 by: first_damping in the first sub-step, 1 in the last, geometric in between.
-APSL_INLINE float scheduled_damping(apsl_parameters parameters, int sub_step) {
-    const int last = parameters.sub_steps - 1;
-    if (parameters.first_damping == 1.0f || sub_step >= last) return 1.0f;
-    return pow(parameters.first_damping, (float)(last - sub_step) / (float)last);
+// What the schedule multiplies α − 1 by, so many sub-steps before the last: 1 in the last, geometric.
+APSL_INLINE float scheduled_damping(float damping_step, int sub_steps_left) {
+    return exp2(damping_step * (float)sub_steps_left);
 }
 
 // α as given where both factors are 1. The floor lets α = 1 be raised too.

@@ -5,6 +5,7 @@
 #define APSL_SOLVE_IN_ONE_GROUP_H
 
 #include "cg_step.h"
+#include "first_guess.h"
 #include "layout.h"
 #include "patch_product.h"
 #include "work_group.h"
@@ -24,9 +25,10 @@ APSL_INLINE apsl_solve begin_solve_in_group(float squares, float scaled_squares)
     return solve;
 }
 
-// Iterates until the tolerance is met or the iterations are used up. Parameters and cloth are read where they are
-// needed: held all the way they would cost 16 scalar registers.
-APSL_INLINE void iterate_in_group(apsl_solve* solve, __global const apsl_parameters* parameters,
+// Starts from the guess in `pressure` where `guessing`, and iterates until the tolerance is met or the
+// iterations are used up. Parameters and cloth are read where they are needed: held all the way they would cost 16
+// scalar registers.
+APSL_INLINE void iterate_in_group(apsl_solve* solve, bool guessing, __global const apsl_parameters* parameters,
                                   __global const apsl_cloth* cloth, __global const uint2* patches,
                                   __global const uint* patch_vertices, __global const ushort* local_triangles,
                                   __global const uint* corner_offsets, __global const uint* corners,
@@ -34,14 +36,26 @@ APSL_INLINE void iterate_in_group(apsl_solve* solve, __global const apsl_paramet
                                   __global const float* damped_diagonal, __global float* product,
                                   __global float* direction, __global float* direction_product,
                                   __global float* pressure, __local float4* forces, __local float* scratch) {
-    bool going_on = true;  // uniform
-    while (going_on && solve->iterations < parameters->max_iterations &&
-           solve->residual > parameters->tolerance_squared * solve->initial_residual) {
+    bool going_on = true;  // uniform, as is guessing
+    while (guessing || (going_on && solve->iterations < parameters->max_iterations &&
+                        solve->residual > parameters->tolerance_squared * solve->initial_residual)) {
         const float curvature =
             group_sum(multiply_patches(*cloth, true, patches, patch_vertices, local_triangles, corner_offsets, corners,
-                                       gradients, residual, product, forces),
+                                       gradients, guessing ? pressure : residual, product, forces),
                       scratch);
         group_memory_barrier();
+        if (guessing) {
+            const float dot =
+                group_sum(guess_dot(*cloth, true, (__global float4*)residual, (__global float4*)pressure), scratch);
+            const float2 sums = scale_guess(*cloth, true, guess_scale(dot, curvature), (__global float4*)residual,
+                                            (__global const float4*)damped_diagonal, (__global const float4*)product,
+                                            (__global float4*)pressure);
+            solve->residual = group_sum(sums.x, scratch);
+            solve->scaled_residual = group_sum(sums.y, scratch);
+            group_memory_barrier();
+            guessing = false;
+            continue;
+        }
         const float2 coefficients = cg_coefficients(solve->scaled_residual, curvature, solve->previous_scaled_residual,
                                                     solve->previous_step, solve->iterations);
         going_on = coefficients.x > 0.0f;
