@@ -34,16 +34,25 @@ bool matrix_free_consistent(const Options& options) {
     return options.matrix == Matrix::consistent && options.apply == Apply::matrix_free;
 }
 
+// With first guesses as well a GPU's kernel needs more registers than there are.
+bool one_group_fits(const Options& options, const DeviceFacts& facts) {
+    return options.kept_pressures == 0 || facts.is_cpu;
+}
+
 Execution resolve_execution(const Options& options, const DeviceFacts& facts, std::size_t largest) {
     switch (options.execution) {
         case Execution::automatic:
-            return matrix_free_consistent(options) && largest <= one_group_triangles(facts) ? Execution::one_group
-                                                                                            : Execution::many_groups;
+            return matrix_free_consistent(options) && one_group_fits(options, facts) &&
+                           largest <= one_group_triangles(facts)
+                       ? Execution::one_group
+                       : Execution::many_groups;
         case Execution::many_groups:
             return options.execution;
         case Execution::one_group:
             if (!matrix_free_consistent(options))
                 invalid("execution is one_group, which needs the consistent matrix, matrix-free");
+            if (!one_group_fits(options, facts))
+                throw Error(ErrorCode::unsupported, "execution is one_group, which takes kept_pressures on a CPU only");
             return options.execution;
     }
     invalid("unknown execution");

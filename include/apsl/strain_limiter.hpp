@@ -22,7 +22,7 @@ namespace apsl {
 struct Options {
     Matrix matrix = Matrix::consistent;
     Apply apply = Apply::matrix_free;
-    /// one_group needs the consistent matrix, matrix-free.
+    /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU kept_pressures 0.
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;

@@ -21,6 +21,9 @@ AXES = [
     [{"APSL_PATCH_VERTICES": 400}],
 ]
 
+# Combinations that host/ never builds for a GPU (host/limiter_options.cpp).
+NOT_FOR_GPUS = {"filter_in_one_group.cl": {"APSL_KEPT_PRESSURES": 8}}
+
 
 @dataclass(frozen=True)
 class Target:
@@ -97,8 +100,11 @@ def variants(kernels):
         # Of each axis what the file reads, every setting once.
         axes = [dict.fromkeys(tuple((n, v) for n, v in setting.items() if n in names) for setting in axis)
                 for axis in AXES]
+        left_out = NOT_FOR_GPUS.get(source.name, {}).items()
         for settings in itertools.product(*axes):
-            found.append(Variant(source, tuple(sorted(itertools.chain(*settings)))))
+            defines = tuple(sorted(itertools.chain(*settings)))
+            if not (left_out and left_out <= set(defines)):
+                found.append(Variant(source, defines))
     return found
 
 
