@@ -61,6 +61,25 @@ bool same(const Json& a, const Json& b) {
     return nlohmann::json(a) == nlohmann::json(b);
 }
 
+// One scene and one run a line: short, and a difference between two files shows which runs differ.
+std::string text_of(const Json& document) {
+    std::string text = "{";
+    for (const auto& [key, value] : document.items()) {
+        text += (text.size() > 1 ? ",\n" : "\n") + Json(key).dump() + ": ";
+        if (!value.is_array()) {
+            text += value.dump();
+            continue;
+        }
+        const char* before = "[\n";
+        for (const Json& entry : value) {
+            text += before + entry.dump();
+            before = ",\n";
+        }
+        text += value.empty() ? "[]" : "\n]";
+    }
+    return text + "\n}\n";
+}
+
 Json machine_json(const std::optional<scenes::OpenClDevice>& device) {
     Json machine{
         {"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()}, {"opencl_device", nullptr}};
@@ -202,8 +221,7 @@ Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const 
 
 void ResultsFile::write() const {
     scenes::WholeFile output(file_);
-    output.write(document_.dump(1));
-    output.write("\n");
+    output.write(text_of(document_));
     output.commit();
 }
 
