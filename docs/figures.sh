@@ -1,17 +1,8 @@
 #!/usr/bin/env bash
 # Draws every picture of docs/pictures and the area-change charts of docs/charts anew from the scenes.
-#   docs/figures.sh            all of them
-#   docs/figures.sh pictures   docs/pictures/*.png and docs/charts/area_change_*.png; nothing in them depends on timing
-#   docs/figures.sh speed      docs/charts/speed_accuracy.png; times the filter, so on a machine that does nothing else
 # Runs stay in out/figures.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-
-part=${1:-all}
-case "$part" in
-  all | pictures | speed) ;;
-  *) echo "error: docs/figures.sh $part: expected all, pictures or speed" >&2; exit 2 ;;
-esac
 
 cmake/debian_packages.sh
 cmake --preset program >/dev/null
@@ -31,33 +22,26 @@ still() {
   mv "$runs/$1/still"/frame_*.png "docs/pictures/$1.png"
 }
 
-if [[ "$part" != speed ]]; then
-  run curtain curtain
-  run curtain_unfiltered curtain_unfiltered
-  run paper_fig1 paper_fig1
-  run paper_fig1_unfiltered paper_fig1 --set strain_limiting=null
-  run paper_fig6 paper_fig6
-  run stand_alone_curtain stand_alone_curtain
-  run twist twist
-  run skirt skirt
-  run sphere_drape sphere_drape
+run curtain curtain
+run curtain_unfiltered curtain_unfiltered
+run paper_fig1 paper_fig1
+run paper_fig1_unfiltered paper_fig1 --set strain_limiting=null
+run paper_fig6 paper_fig6
+run stand_alone_curtain stand_alone_curtain
+run twist twist
+run skirt skirt
+run sphere_drape sphere_drape
 
-  scenes/pictures/side_by_side.py "$runs/curtain_unfiltered" "$runs/curtain" --frame 30 --out docs/pictures/side_by_side.png
-  scenes/pictures/side_by_side.py "$runs/paper_fig1_unfiltered" "$runs/paper_fig1" --frame 45 --out docs/pictures/paper_fig1.png
-  still paper_fig6 110 --zoom 1.2
-  still twist 150
-  still skirt 179
-  still sphere_drape 89 --zoom 1.45
+scenes/pictures/side_by_side.py "$runs/curtain_unfiltered" "$runs/curtain" --frame 30 --out docs/pictures/side_by_side.png
+scenes/pictures/side_by_side.py "$runs/paper_fig1_unfiltered" "$runs/paper_fig1" --frame 45 --out docs/pictures/paper_fig1.png
+still paper_fig6 110 --zoom 1.2
+still twist 150
+still skirt 179
+still sphere_drape 89 --zoom 1.45
 
-  bench/charts/area_change_curves.py "$runs/curtain_unfiltered/report.json" "$runs/curtain/report.json" \
-    "$runs/stand_alone_curtain/report.json" --labels "filter off" "filter on" "stand-alone" \
-    --title "Greatest area change per frame, 65×65 curtain" --out docs/charts/area_change_curtain.png
-  bench/charts/area_change_curves.py "$runs/paper_fig1_unfiltered/report.json" "$runs/paper_fig1/report.json" \
-    "$runs/paper_fig6/report.json" --labels "Fig. 1, filter off" "Fig. 1, filter on" "Fig. 6, stand-alone" \
-    --title "Greatest area change per frame, the paper's figures" --out docs/charts/area_change_paper.png
-fi
-
-if [[ "$part" != pictures ]]; then
-  bench/charts/speed_accuracy_sweep.py "$program" --scene scenes/curtain.json --frames 60 --out docs/charts/speed_accuracy.json
-  bench/charts/speed_accuracy.py docs/charts/speed_accuracy.json --out docs/charts/speed_accuracy.png
-fi
+bench/charts/area_change_curves.py "$runs/curtain_unfiltered/report.json" "$runs/curtain/report.json" \
+  "$runs/stand_alone_curtain/report.json" --labels "filter off" "filter on" "stand-alone" \
+  --title "Greatest area change per frame, 65×65 curtain" --out docs/charts/area_change_curtain.png
+bench/charts/area_change_curves.py "$runs/paper_fig1_unfiltered/report.json" "$runs/paper_fig1/report.json" \
+  "$runs/paper_fig6/report.json" --labels "Fig. 1, filter off" "Fig. 1, filter on" "Fig. 6, stand-alone" \
+  --title "Greatest area change per frame, the paper's figures" --out docs/charts/area_change_paper.png

@@ -10,11 +10,23 @@ namespace apsl::scenes {
 namespace {
 
 constexpr std::array kSubSteps{1, 2, 3, 5, 8, 12, 20, 32, 50};
-constexpr std::array kRegularizations{1.2, 1.1, 1.05, 1.02, 1.01};
+
+// Of the first sub-step, 0 where all are alike, and of the last. Where α rises, solves start from kept pressures.
+struct Regularizations {
+    double first, last;
+};
+constexpr std::array kRegularizations{
+    Regularizations{0.0, 1.2},  Regularizations{0.0, 1.1},  Regularizations{0.0, 1.05},  Regularizations{0.0, 1.02},
+    Regularizations{0.0, 1.01}, Regularizations{1.02, 1.2}, Regularizations{1.005, 1.2}, Regularizations{1.005, 2.0}};
 constexpr std::array kStepFactors{1, 2, 4, 8};
 constexpr std::size_t kMaxConfirmations = 6;
 
 struct Interrupted {};
+
+void set_sub_steps(LimiterSettings& settings, int sub_steps) {
+    settings.sub_steps = sub_steps;
+    settings.kept_pressures = settings.first_regularization > 0.0 ? sub_steps : 0;
+}
 
 class Search {
 public:
@@ -83,17 +95,18 @@ private:
         return !goal_.meets_target(trial) && goal_.within_budget(trial);
     }
 
-    // The fewest sub-steps that meet the target, for each regularization. False where more steps cannot pay.
+    // The fewest sub-steps that meet the target, for each pair of regularizations. False where more steps cannot pay.
     bool search_with_steps(int steps_per_frame, bool tune_regularization) {
         LimiterSettings settings = given_;
         settings.steps_per_frame = steps_per_frame;
-        std::vector<double> regularizations(kRegularizations.begin(), kRegularizations.end());
-        if (!tune_regularization) regularizations = {given_.regularization};
+        std::vector<Regularizations> regularizations(kRegularizations.begin(), kRegularizations.end());
+        if (!tune_regularization) regularizations = {{given_.first_regularization, given_.regularization}};
         auto place = static_cast<std::ptrdiff_t>(kSubSteps.size() / 2);
-        for (const double regularization : regularizations) {
-            settings.regularization = regularization;
+        for (const Regularizations& regularization : regularizations) {
+            settings.first_regularization = regularization.first;
+            settings.regularization = regularization.last;
             const auto misses = [&](std::ptrdiff_t at) {
-                settings.sub_steps = kSubSteps[static_cast<std::size_t>(at)];
+                set_sub_steps(settings, kSubSteps[static_cast<std::size_t>(at)]);
                 return needs_more(settings);
             };
             const auto last = static_cast<std::ptrdiff_t>(kSubSteps.size()) - 1;
@@ -146,7 +159,7 @@ private:
         for (const int sub_steps : kSubSteps) {
             if (sub_steps <= candidates.front().settings.sub_steps) continue;
             LimiterSettings settings = candidates.front().settings;
-            settings.sub_steps = sub_steps;
+            set_sub_steps(settings, sub_steps);
             add_confirmation(settings, confirmed);
             if (goal_.meets_target(*confirmed) && goal_.within_budget(*confirmed)) break;
         }

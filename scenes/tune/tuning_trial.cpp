@@ -41,6 +41,8 @@ LimiterSettings limiter_settings(const nlohmann::ordered_json& document) {
     settings.sub_steps = limiting.value("sub_steps", standard.sub_steps);
     settings.tolerance = limiting.value("tolerance", shortest(standard.tolerance));
     settings.max_iterations = limiting.value("max_iterations", standard.max_iterations);
+    settings.kept_pressures = limiting.value("kept_pressures", 0);
+    settings.first_regularization = limiting.value("first_regularization", shortest(standard.first_regularization));
     settings.regularization = shortest(standard.regularization);
     if (limiting.contains("regularization") && limiting["regularization"].is_number()) {
         settings.regularization = limiting["regularization"].get<double>();
@@ -62,6 +64,10 @@ nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const Limi
     if (!limiting.contains("regularization") || limiting["regularization"].is_number()) {
         limiting["regularization"] = settings.regularization;
     }
+    if (settings.first_regularization != before.first_regularization) {
+        limiting["first_regularization"] = settings.first_regularization;
+    }
+    if (settings.kept_pressures != before.kept_pressures) limiting["kept_pressures"] = settings.kept_pressures;
     limiting["tolerance"] = settings.tolerance;
     limiting["max_iterations"] = settings.max_iterations;
     return document;

@@ -7,7 +7,6 @@ import importlib
 import io
 import json
 import os
-import stat
 import subprocess
 import sys
 import tempfile
@@ -22,32 +21,9 @@ from made_up_results import COPY, benchmark_results, measurement, report
 
 PROJECT = Path(__file__).resolve().parents[3]
 CHARTS = PROJECT / "bench" / "charts"
-CURVES, SWEEP, SPEED, KERNELS = (CHARTS / f"{name}.py" for name in (
-    "area_change_curves", "speed_accuracy_sweep", "speed_accuracy", "kernel_charts"))
+CURVES, KERNELS = (CHARTS / f"{name}.py" for name in ("area_change_curves", "kernel_charts"))
 sys.path.insert(0, str(CHARTS))
 BLUE, VERMILLION, GREEN = (0, 114, 178), (213, 94, 0), (0, 158, 115)
-
-# Stands in for the program: area change falls with sub-steps and rises with α, the printed matrix breaks down.
-PROGRAM = """#!/usr/bin/python3
-import json, sys
-arguments = sys.argv[1:]
-values = dict(zip(arguments, arguments[1:]))
-sets = dict(text.split("=", 1) for flag, text in zip(arguments, arguments[1:]) if flag == "--set")
-assert arguments[0] == "run" and values["--frames"] == "7" and values["--backend"] == "opencl"
-if sets.get("density") == "-1":
-    print("error: scene.json: density: expected above 0, found -1", file=sys.stderr)
-    sys.exit(2)
-summary = {"max_area_change": 0.8, "mean_max_area_change": 0.6, "filter_seconds_per_frame": 0.0, "status": "ok"}
-if sets.get("strain_limiting") != "null":
-    alpha, count = float(sets["strain_limiting.regularization"]), int(sets["strain_limiting.sub_steps"])
-    change = 0.2 * alpha / count
-    summary.update(max_area_change=change, mean_max_area_change=change / 2, filter_seconds_per_frame=1e-3 * count)
-    if sets["strain_limiting.matrix"] == "printed":
-        summary.update(max_area_change=None, mean_max_area_change=None, status="diverged")
-json.dump({"backend": "opencl", "device": "Made-up device", "vertices": 9, "triangles": 8, "frames": [],
-           "summary": summary}, open(values["--report"], "w"))
-sys.exit(1 if summary["status"] == "diverged" else 0)
-"""
 
 
 def run(script, *arguments):
@@ -129,57 +105,6 @@ class AreaChangeCurves(Folder):
         self.write("matplotlib.py", "raise ImportError('No module named matplotlib')")
         done = run_command(CURVES, "a", "--out", "b.png", PYTHONPATH=str(self.folder))
         self.assert_one_line_error(done, "apt-get install python3-matplotlib")
-
-
-class SpeedAccuracy(Folder):
-    def setUp(self):
-        super().setUp()
-        self.program = self.write("apsl", PROGRAM)
-        self.program.chmod(self.program.stat().st_mode | stat.S_IXUSR)
-
-    def sweep_arguments(self, *arguments):
-        return [self.program, "--frames", "7", "--sub-steps", "1,2,4", "--consistent", "1.2,2",
-                "--out", self.folder / "summary.json", *arguments]
-
-    def sweep(self, *arguments):
-        return run(SWEEP, *self.sweep_arguments(*arguments))
-
-    def test_sweep_gathers_every_setting_and_the_run_without_the_filter(self):
-        done = run_command(SWEEP, *self.sweep_arguments("--printed", "3"))
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        summary = json.loads((self.folder / "summary.json").read_text())
-        self.assertEqual(summary["device"], "Made-up device")
-        self.assertEqual(summary["without_filter"]["max_area_change"], 0.8)
-        self.assertEqual([(run["matrix"], run["regularization"], run["sub_steps"]) for run in summary["runs"]],
-                         [("consistent", 1.2, 1), ("consistent", 1.2, 2), ("consistent", 1.2, 4),
-                          ("consistent", 2.0, 1), ("consistent", 2.0, 2), ("consistent", 2.0, 4),
-                          ("printed", 3.0, 1), ("printed", 3.0, 2), ("printed", 3.0, 4)])
-        self.assertAlmostEqual(summary["runs"][1]["max_area_change"], 0.12)
-        self.assertEqual({run["status"] for run in summary["runs"][6:]}, {"diverged"})
-
-    def test_chart_of_the_sweep(self):
-        self.assertEqual(self.sweep("--printed", "3").returncode, 0)
-        out = self.folder / "chart.png"
-        self.draw(SPEED, self.folder / "summary.json", "--out", out)
-        # α = 2 is blue and stretches more than α = 1.2, which is vermillion: it lies higher, over the same times.
-        upper, lower = (pixels_of(out, colour) for colour in (BLUE, VERMILLION))
-        self.assertLess(upper[0].min(), lower[0].min())
-        self.assertAlmostEqual(upper[1].max(), lower[1].max(), delta=2)
-        # Runs that broke down have a line in the legend and no point: no marker as wide as ten pixels.
-        broken = pixels_of(out, GREEN)
-        self.assertLess(np.ptp(broken[0]), 10)
-
-    def test_errors_of_the_program_are_passed_on(self):
-        self.assert_one_line_error(self.sweep("--set", "density=-1"), "exit code 2", "density: expected above 0")
-        self.assertFalse((self.folder / "summary.json").exists())
-        self.assert_one_line_error(run(SWEEP, self.folder / "absent", "--out", "x.json"), "cannot be run")
-        self.assert_one_line_error(self.sweep("--sub-steps", "0"), "--sub-steps")
-        self.assert_one_line_error(self.sweep("--consistent", "0.5"), "--consistent")
-
-    def test_chart_errors(self):
-        out = self.folder / "chart.png"
-        self.assert_one_line_error(run(SPEED, self.write("s.json", {}), "--out", out), "s.json", "not a summary")
-        self.assert_one_line_error(run(SPEED, self.write("e.json", {"runs": []}), "--out", out), "e.json", "no run")
 
 
 class KernelCharts(Folder):

@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""What the results of `apsl compare` say about speed against accuracy: a table in Markdown. Expects the studies
+curtain_8k, curtain_32k and refinement of bench/studies as files of one folder."""
+
+import sys
+from pathlib import Path
+
+from chart_tools import ChartError, OneLineParser, exit_code_of, plain
+from compare_results import front, held, is_ours, read_results, time_at
+
+MEAN, GREATEST = "mean_max_area_change", "max_area_change"
+LEVELS = (0.3, 0.2, 0.1, 0.05, 0.02, 0.01)
+PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2, "strain_limiting.tolerance": 0.1}
+
+
+def is_paper_setting(run):
+    return run["method"] == "apsl" and all(run["knobs"].get(name) == value for name, value in PAPER.items())
+
+
+def shown(value):
+    return f"{plain(round(100.0 * value, 3))} %"
+
+
+def knobs_of(run):
+    return ", ".join(f"{name.split('.')[-1]} {plain(value)}" for name, value in run["knobs"].items()
+                     if isinstance(value, (int, float)) and name.split(".")[-1] not in (
+                         "max_iterations", "kept_pressures", "steps_per_frame", "adaptive_iterations"))
+
+
+def against_paper(runs):
+    """(paper's run, ours with the least mean in no more time and with no greater greatest, ours that is quickest with no
+    greater mean and greatest)."""
+    paper = next((run for run in runs if is_paper_setting(run)), None)
+    if paper is None:
+        raise ChartError("no run with the paper's setting")
+    ours = [run for run in runs if is_ours(run) and run[GREATEST] <= paper[GREATEST]]
+    best = min((run for run in ours if run["milliseconds"] <= paper["milliseconds"]), key=lambda run: run[MEAN])
+    quickest = min((run for run in ours if run[MEAN] <= paper[MEAN]), key=lambda run: run["milliseconds"])
+    return paper, best, quickest
+
+
+def against_rivals(runs):
+    """[(error, milliseconds of ours, of the best rival, its title)], where both reach it."""
+    table = []
+    for level in LEVELS:
+        ours = time_at([run for run in runs if is_ours(run)], MEAN, level)
+        rivals = []
+        for method in {run["method"] for run in runs if not is_ours(run)}:
+            own = [run for run in runs if run["method"] == method]
+            at = time_at(own, MEAN, level)
+            if at is not None:
+                rivals.append((at, own[0]["title"]))
+        table.append((level, ours, *(min(rivals) if rivals else (None, "none reaches it"))))
+    return table
+
+
+def size_rows(results, name):
+    runs = [run for run in results["runs"] if run["method"] != "none" and held(run) and run["milliseconds"] > 0.0]
+    paper, best, quickest = against_paper(runs)
+    rows = [f"| {name}: mean of each frame's greatest, in the time of the paper's setting ({plain(paper['milliseconds'])}"
+            f" ms) | a third of {shown(paper[MEAN])} | {shown(best[MEAN])}, {plain(paper[MEAN] / best[MEAN])} times less "
+            f"({best['title']}: {knobs_of(best)}) |",
+            f"| {name}: greatest | ≤ {shown(paper[GREATEST])} | {shown(best[GREATEST])} |",
+            f"| {name}: time for the paper's error | a third of {plain(paper['milliseconds'])} ms | "
+            f"{plain(quickest['milliseconds'])} ms, {plain(paper['milliseconds'] / quickest['milliseconds'])} times less "
+            f"({quickest['title']}: {knobs_of(quickest)}) |"]
+    least = min((run for run in runs if is_ours(run)), key=lambda run: run[MEAN])
+    rows.append(f"| {name}: 0.1 % | reachable | {shown(least[MEAN])} (greatest {shown(least[GREATEST])}) at "
+                f"{plain(least['milliseconds'])} ms ({least['title']}: {knobs_of(least)}) |")
+    for level, ours, rival, title in against_rivals(runs):
+        if ours is None and rival is None:
+            continue
+        asked = "3×" if "8 k" in name else "5×"
+        reached = ("ours does not reach it" if ours is None else f"ours {plain(ours)} ms, none of the others"
+                   if rival is None else f"{plain(rival / ours)}× ({plain(ours)} ms, {title} {plain(rival)} ms)")
+        rows.append(f"| {name}: faster than the best rival at {shown(level)} | {asked} | {reached} |")
+    return rows
+
+
+def growth_row(results, target):
+    runs = [run for run in results["runs"] if is_ours(run) and held(run)]
+    per_triangle = {}
+    for size in sorted({run["triangles"] for run in runs}):
+        at = time_at([run for run in runs if run["triangles"] == size], MEAN, target)
+        if at is not None:
+            per_triangle[size] = 1e3 * at / size
+    text = ", ".join(f"{plain(size)}: {plain(value)} µs" for size, value in per_triangle.items())
+    return f"| time a triangle of ours to reach {shown(target)}, 2 k to 130 k triangles | grows by less than 2× | {text} |"
+
+
+def run(arguments):
+    parser = OneLineParser(description=__doc__)
+    parser.add_argument("folder", nargs="?", default="docs/accuracy", type=Path)
+    parser.add_argument("--target", type=float, default=0.1)
+    options = parser.parse_args(arguments)
+    rows = ["| | asked | reached |", "|---|---|---|"]
+    for file, name in (("curtain_8k", "8 k"), ("curtain_32k", "32 k")):
+        rows += size_rows(read_results(options.folder / f"{file}.json"), name)
+    rows.append(growth_row(read_results(options.folder / "refinement.json"), options.target))
+    print("\n".join(rows))
+
+
+if __name__ == "__main__":
+    sys.exit(exit_code_of(run))
