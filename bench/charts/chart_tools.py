@@ -83,11 +83,11 @@ def new_chart(columns=1, rows=1, width=8.0, height=4.2, **options):
     return plt.subplots(rows, columns, figsize=(width, height), constrained_layout=True, **options)
 
 
-def save_chart(figure, path):
+def save_chart(figure, path, dots_per_inch=DOTS_PER_INCH):
     if Path(path).suffix.lower() != ".png":
         raise ChartError(f"--out {path}: expected a name that ends in .png")
     file = io.BytesIO()
-    figure.savefig(file, format="png", dpi=DOTS_PER_INCH, facecolor="white")
+    figure.savefig(file, format="png", dpi=dots_per_inch, facecolor="white")
     plt.close(figure)
     write_whole(path, file.getvalue())
     print(path)

@@ -7,7 +7,7 @@
 import sys
 
 from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, plain, save_chart, show_few_decades
-from compare_results import by_method, labelled, legend_below, read_results, styles, title_of
+from compare_results import (WIDE_DOTS_PER_INCH, by_method, labelled, legend_below, read_results, styles, title_of)
 
 
 def choose(runs, milliseconds):
@@ -47,7 +47,7 @@ def run(arguments):
     legend_below(figure, labelled([axis]))
     figure.suptitle(f"{title_of(results, options.scene)}, at most {plain(options.milliseconds)} ms a frame in the limiter",
                     x=0.01, ha="left", fontsize=10.5)
-    save_chart(figure, options.out)
+    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

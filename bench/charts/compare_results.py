@@ -5,6 +5,7 @@ import math
 
 from chart_tools import ChartError, read_json
 
+WIDE_DOTS_PER_INCH = 120  # 11 inches make 1320 pixels
 OURS = "apsl"  # names of our own variants begin so
 WORST_SHOWN = 10.0  # 1000 %: a run beyond it has broken down, whatever its status says
 

@@ -23,7 +23,7 @@ def shown(value):
 
 
 def knobs_of(run):
-    return ", ".join(f"{name.split('.')[-1]} {plain(value)}" for name, value in run["knobs"].items()
+    return ", ".join(f"{name.split('.')[-1]} {value:g}" for name, value in run["knobs"].items()
                      if isinstance(value, (int, float)) and name.split(".")[-1] not in (
                          "max_iterations", "kept_pressures", "steps_per_frame", "adaptive_iterations"))
 

@@ -6,7 +6,8 @@ sub-steps of ours. From the results of `apsl compare`."""
 import sys
 
 from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, save_chart, show_few_decades
-from compare_results import by_method, held, labelled, legend_below, read_results, styles, title_of
+from compare_results import (WIDE_DOTS_PER_INCH, by_method, held, labelled, legend_below, read_results, styles,
+                             title_of)
 
 PASSES = ("iterations", "strain_limiting.sub_steps")
 
@@ -59,7 +60,7 @@ def run(arguments):
     axes[0].set_ylabel("|A − A⁰| / A⁰")
     legend_below(figure, labelled(axes))
     figure.suptitle(title_of(results, options.scene), x=0.01, ha="left", fontsize=10.5)
-    save_chart(figure, options.out)
+    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,14 @@ precision), against milliseconds in the limiter; from the results of `apsl compa
 import sys
 
 from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, save_chart, show_few_decades
-from compare_results import by_method, labelled, legend_below, read_results, styles
+from compare_results import WIDE_DOTS_PER_INCH, by_method, labelled, legend_below, read_results, styles
+
+
+def points_of(runs, place):
+    """[(milliseconds, RMS distance in mm at the place-th of the frames)], by time."""
+    return sorted((run["milliseconds"], 1e3 * run["deviation"]["frames"][place]["rms"]) for run in runs
+                  if len(run["deviation"]["frames"]) > place
+                  and run["deviation"]["frames"][place]["rms"] is not None)
 
 
 def run(arguments):
@@ -25,13 +32,12 @@ def run(arguments):
     values = []
     for place, (axis, frame) in enumerate(zip([axes] if len(frames) == 1 else axes, frames)):
         for method, own in by_method(limited).items():
-            points = sorted((run["milliseconds"], 1e3 * run["deviation"]["frames"][place]["rms"]) for run in own
-                            if len(run["deviation"]["frames"]) > place
-                            and run["deviation"]["frames"][place]["rms"] is not None)
-            if points:
-                colour, marker, width = table[method]
-                axis.plot(*zip(*points), color=colour, marker=marker, markersize=4.5, linewidth=width,
-                          label=own[0]["title"])
+            colour, marker, width = table[method]
+            for steps in sorted({run["knobs"]["steps_per_frame"] for run in own}):
+                points = points_of([run for run in own if run["knobs"]["steps_per_frame"] == steps], place)
+                if points:
+                    axis.plot(*zip(*points), "-" if steps == 1 else "--", color=colour, marker=marker, markersize=4.5,
+                              linewidth=width, label=own[0]["title"] + (f", {steps} steps a frame" if steps > 1 else ""))
                 values += [value for _, value in points if value > 0.0]
         without = next((run for run in runs if run["method"] == "none"), None)
         if without:
@@ -48,7 +54,7 @@ def run(arguments):
     show_few_decades(first.yaxis, min(values), max(values))
     first.set_ylabel("RMS distance from the converged solution, mm")
     legend_below(figure, labelled([first] if len(frames) == 1 else axes))
-    save_chart(figure, options.out)
+    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import math
 import sys
 
 from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, save_chart
-from compare_results import by_method, held, is_ours, read_results
+from compare_results import WIDE_DOTS_PER_INCH, by_method, held, is_ours, read_results
 
 
 def length(run):
@@ -67,7 +67,7 @@ def run(arguments):
         axis.grid(False, axis="y")
         axis.set_xlabel("% of the way without")
         axis.set_yticks(range(len(methods)), [titles[method] for method in methods], fontsize=8.5)
-    save_chart(figure, options.out)
+    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

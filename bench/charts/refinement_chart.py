@@ -6,7 +6,8 @@ triangle it needs for a fixed area change. From the results of `apsl compare` on
 import sys
 
 from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, plain, save_chart, show_few_decades
-from compare_results import by_method, front, held, labelled, legend_below, read_results, styles, time_at
+from compare_results import (WIDE_DOTS_PER_INCH, by_method, front, held, labelled, legend_below, read_results, styles,
+                             time_at)
 
 ERROR = "mean_max_area_change"
 
@@ -62,7 +63,7 @@ def run(arguments):
     machine = results["machine"]
     figure.suptitle(f"Curtain, finer and finer; {machine['processor']}, {machine['cores']} cores", x=0.01, ha="left",
                     fontsize=10.5)
-    save_chart(figure, options.out)
+    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2,
 
 
 def made_up_run(scene, method, milliseconds, mean, knobs=None, triangles=8192, status="ok"):
-    return {"scene": scene, "method": method, "title": method.replace("_", " "), "knobs": knobs or {"iterations": 5},
+    return {"scene": scene, "method": method, "title": method.replace("_", " "), "knobs": {"steps_per_frame": 1, **(knobs or {"iterations": 5})},
             "status": status, "triangles": triangles, "limiter_seconds_per_frame": {"median": 1e-3 * milliseconds},
             "max_area_change": 2.0 * mean, "mean_max_area_change": mean, "rms_area_change": 0.3 * mean,
             "mean_displacement": [0.0, -mean, 0.0], "frame_max_area_change": [mean, 2.0 * mean, None],
