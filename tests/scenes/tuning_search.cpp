@@ -11,7 +11,7 @@ namespace {
 
 // A made-up cloth: area change 0.2 / (sub-steps · steps), 1 ms a sub-step and 10 ms of other work a step; frames from
 // `hard_from` on have three times the change. Whatever else is set makes no difference to areas; a lower
-// regularization costs more.
+// regularization, be it the first sub-step's alone, costs more.
 struct MadeUp {
     int hard_from = 1000;
     int trials = 0;
@@ -25,7 +25,8 @@ struct MadeUp {
             ++frames;
             const double harder = trial.frames >= hard_from ? 3.0 : 1.0;
             trial.max_area_change = std::max(trial.max_area_change, harder * 0.2 / (s.sub_steps * s.steps_per_frame));
-            trial.limiter_seconds = 1e-3 * s.sub_steps * s.steps_per_frame * (1.0 + 0.1 * (2.0 - s.regularization));
+            const double least = s.first_regularization > 0.0 ? s.first_regularization : s.regularization;
+            trial.limiter_seconds = 1e-3 * s.sub_steps * s.steps_per_frame * (1.0 + 0.1 * (2.0 - least));
             trial.rest_seconds = 1e-2 * s.steps_per_frame;
             ++trial.frames;
             trial.cut_short = trial.frames < count && enough(trial);
@@ -83,6 +84,11 @@ TEST_CASE("settings change nothing else in a scene") {
           R"({"time_step":0.005,"strain_limiting":{"matrix":"consistent","regularization":[1.1,1.2],"sub_steps":3,)"
           R"("tolerance":0.1,"max_iterations":50},"frames":3,"steps_per_frame":2})");
     CHECK(limiter_settings(changed).sub_steps == 3);
+    const LimiterSettings rising{.sub_steps = 4, .first_regularization = 1.01, .kept_pressures = 4};
+    const auto risen = with_settings(document, rising);
+    CHECK(risen["strain_limiting"]["first_regularization"] == 1.01);
+    CHECK(risen["strain_limiting"]["kept_pressures"] == 4);
+    CHECK(limiter_settings(risen) == rising);
 }
 
 TEST_CASE("a scene's text is the scene, short things in one line") {
