@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "limiter_implementation.hpp"
 
+#include "device_parameters.hpp"
 #include "limiter_options.hpp"
 #include "opencl_error.hpp"
 #include "program.hpp"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 
 namespace apsl {
@@ -27,15 +27,6 @@ constexpr std::size_t gradient_bytes = 32;
 
 [[noreturn]] void invalid(const std::string& what) {
     throw Error(ErrorCode::invalid_argument, what);
-}
-
-apsl_parameters device_parameters(const Parameters& p) {
-    const bool scheduled = p.first_regularization > 0.0f && p.sub_steps > 1;
-    const float damping_step = scheduled ? std::log2((p.first_regularization - 1.0f) / (p.regularization - 1.0f)) /
-                                               static_cast<float>(p.sub_steps - 1)
-                                         : 0.0f;
-    return {p.time_step, p.regularization, damping_step,         p.target_area_change, p.tolerance * p.tolerance,
-            p.sub_steps, p.max_iterations, p.adaptive_iterations};
 }
 
 void check_view(const BufferView& view, std::size_t floats, const char* name) {
@@ -130,9 +121,12 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     product = zeroed_buffer(triangle_count);
     direction = buffer(triangle_count * sizeof(float));
     direction_product = buffer(triangle_count * sizeof(float));
-    const std::size_t slots = std::max<std::size_t>(options.kept_pressures, 1);
-    for (std::size_t n = 0; n < (one_group() ? 1 : slots); ++n)
-        pressures.push_back(zeroed_buffer(triangle_count * (one_group() ? 1 + options.kept_pressures : 1)));
+    if (one_group()) {
+        pressures.push_back(zeroed_buffer(triangle_count * std::size_t{1 + options.kept_pressures}));
+    } else {
+        for (std::uint32_t n = 0; n < std::max(options.kept_pressures, 1u); ++n)
+            pressures.push_back(zeroed_buffer(triangle_count));
+    }
 }
 
 void StrainLimiter::Implementation::create_kernels() {
@@ -255,8 +249,7 @@ void StrainLimiter::Implementation::queue_parameters(CommandSequence& commands,
     }
 }
 
-void StrainLimiter::Implementation::use_pressures(int sub_step) const {
-    const BufferHandle& pressure = pressures[std::min(static_cast<std::size_t>(sub_step), pressures.size() - 1)];
+void StrainLimiter::Implementation::use_pressures(const BufferHandle& pressure) const {
     set_argument(cg_update, 8, pressure);
     if (finish_solve.handle) set_argument(finish_solve, 15, pressure);
     set_argument(gather_displacements, 8, pressure);
@@ -265,10 +258,10 @@ void StrainLimiter::Implementation::use_pressures(int sub_step) const {
     set_argument(start_from_guess, 6, pressure);
 }
 
-void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, int sub_step) const {
+void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, const BufferHandle& pressure) const {
     const cl_uint multiplied = assembled() ? 7 : 10;
     launch(commands, measure_guess);
-    set_argument(apply_dot, multiplied, pressures[std::min(static_cast<std::size_t>(sub_step), pressures.size() - 1)]);
+    set_argument(apply_dot, multiplied, pressure);
     set_argument(apply_dot, multiplied + 2, cl_int{0});
     launch(commands, apply_dot);
     set_argument(apply_dot, multiplied, residual);
@@ -276,11 +269,12 @@ void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, int s
 }
 
 void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int sub_step, int max_iterations) const {
-    use_pressures(sub_step);
+    const BufferHandle& pressure = pressures[std::min(static_cast<std::size_t>(sub_step), pressures.size() - 1)];
+    use_pressures(pressure);
     launch(commands, assemble_gradients);
     launch_one_group(commands, begin_solve);
     if (assembled()) launch(commands, assemble_pressure_csr);
-    if (options.kept_pressures > 0) queue_guess(commands, sub_step);
+    if (options.kept_pressures > 0) queue_guess(commands, pressure);
     const cl_int queued = queued_iterations(options, largest_cloth, max_iterations);
     for (cl_int k = 0; k < queued; ++k) {
         set_argument(apply_dot, assembled() ? 9 : 12, k);

@@ -65,8 +65,8 @@ private:
     void check_buffers(const Buffers& buffers) const;
     void bind(const Buffers& buffers) const;
     void queue_parameters(host::CommandSequence& commands, std::span<const Parameters> given) const;
-    void use_pressures(int sub_step) const;
-    void queue_guess(host::CommandSequence& commands, int sub_step) const;
+    void use_pressures(const host::BufferHandle& pressure) const;
+    void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;
     void queue_solve(host::CommandSequence& commands, int sub_step, int max_iterations) const;
     void queue_many_groups(host::CommandSequence& commands, int sub_steps, int max_iterations) const;
 

@@ -45,8 +45,7 @@ APSL_INLINE float2 advance_cg(apsl_cloth cloth, bool active, float step, float b
         squares += r * r * damped_diagonal[i];
         scaled_squares += r * r;
     }
-    return (float2)(squares.x + squares.y + squares.z + squares.w,
-                    scaled_squares.x + scaled_squares.y + scaled_squares.z + scaled_squares.w);
+    return (float2)(sum_of_components(squares), sum_of_components(scaled_squares));
 }
 
 #endif

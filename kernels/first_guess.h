@@ -33,7 +33,7 @@ APSL_INLINE float guess_dot(apsl_cloth cloth, bool active, __global const float4
     float4 sum = (float4)(0.0f);
     for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE)
         sum += residual[begin + n] * pressure[begin + n];
-    return sum.x + sum.y + sum.z + sum.w;
+    return sum_of_components(sum);
 }
 
 // t = r̄·y₀ / y₀·Ay₀; 0, which drops the guess, where that is no number.
@@ -61,8 +61,7 @@ APSL_INLINE float2 scale_guess(apsl_cloth cloth, bool active, float scale, __glo
         squares += r * r * damped_diagonal[i];
         scaled_squares += r * r;
     }
-    return (float2)(squares.x + squares.y + squares.z + squares.w,
-                    scaled_squares.x + scaled_squares.y + scaled_squares.z + scaled_squares.w);
+    return (float2)(sum_of_components(squares), sum_of_components(scaled_squares));
 }
 
 #endif

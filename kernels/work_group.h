@@ -87,6 +87,10 @@ APSL_INLINE float group_max(float value, __local float* scratch) {
     return value;
 }
 
+APSL_INLINE float sum_of_components(float4 v) {
+    return v.x + v.y + v.z + v.w;
+}
+
 // The partial results of one kind, one float for each of `groups` groups, of the cloth of this work-group.
 APSL_INLINE __global float* partials_of(__global float* partials, uint kind, uint groups) {
     return partials + ((uint)get_group_id(1) * APSL_PARTIAL_KINDS + kind) * groups;

@@ -6,8 +6,8 @@
 
 import sys
 
-from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, plain, save_chart, show_few_decades
-from compare_results import (WIDE_DOTS_PER_INCH, by_method, labelled, legend_below, read_results, styles, title_of)
+from chart_tools import ChartError, exit_code_of, new_chart, plain, show_few_decades
+from compare_results import by_method, read_results, results_parser, save_comparison, styles, title_of
 
 
 def choose(runs, milliseconds):
@@ -18,11 +18,8 @@ def choose(runs, milliseconds):
 
 
 def run(arguments):
-    parser = OneLineParser(description=__doc__)
-    parser.add_argument("results", metavar="results.json")
-    parser.add_argument("--scene", required=True, help="name in the results")
+    parser = results_parser(__doc__, scene=True)
     parser.add_argument("--milliseconds", type=float, default=5.0, help="in the limiter, a frame")
-    parser.add_argument("--out", required=True, metavar="FILE.png")
     options = parser.parse_args(arguments)
     results = read_results(options.results)
     runs = [run for run in results["runs"] if run["scene"] == options.scene and run.get("frame_max_area_change")]
@@ -44,10 +41,8 @@ def run(arguments):
     show_few_decades(axis.yaxis, min(shown), max(shown), " %")
     axis.set_xlabel("frame")
     axis.set_ylabel("greatest |A − A⁰| / A⁰")
-    legend_below(figure, labelled([axis]))
-    figure.suptitle(f"{title_of(results, options.scene)}, at most {plain(options.milliseconds)} ms a frame in the limiter",
-                    x=0.01, ha="left", fontsize=10.5)
-    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
+    save_comparison(figure, [axis], options.out,
+                    f"{title_of(results, options.scene)}, at most {plain(options.milliseconds)} ms a frame in the limiter")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 
 import math
 
-from chart_tools import ChartError, read_json
+from chart_tools import ChartError, OneLineParser, read_json, save_chart
 
 WIDE_DOTS_PER_INCH = 120  # 11 inches make 1320 pixels
 OURS = "apsl"  # names of our own variants begin so
@@ -13,6 +13,16 @@ WORST_SHOWN = 10.0  # 1000 %: a run beyond it has broken down, whatever its stat
 RIVAL_COLOURS = ("#D55E00", "#009E73", "#CC79A7", "#E69F00", "#8c564b", "#6b6ecf", "#637939")
 RIVAL_MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">")
 OUR_COLOURS = ("#0072B2", "#56B4E9", "#003f6b", "#4a90c2", "#7fb3d5", "#1f4e79", "#9ecae1")
+
+
+def results_parser(description, scene=False):
+    """What every chart of results takes from the command line."""
+    parser = OneLineParser(description=description)
+    parser.add_argument("results", metavar="results.json")
+    if scene:
+        parser.add_argument("--scene", required=True, help="name in the results")
+    parser.add_argument("--out", required=True, metavar="FILE.png")
+    return parser
 
 
 def read_results(path):
@@ -33,8 +43,8 @@ def number(value):
     return math.nan if value is None else float(value)
 
 
-def is_ours(run):
-    return run["method"].startswith(OURS)
+def is_ours(method):
+    return method.startswith(OURS)
 
 
 def held(run):
@@ -46,7 +56,7 @@ def held(run):
 def by_method(runs):
     """{method: its runs}, ours first, the others in the order in which they were run."""
     methods = {}
-    for run in sorted(runs, key=lambda run: not is_ours(run)):
+    for run in sorted(runs, key=lambda run: not is_ours(run["method"])):
         methods.setdefault(run["method"], []).append(run)
     return methods
 
@@ -59,7 +69,7 @@ def styles(results):
         method = run["method"]
         if method in table:
             continue
-        if is_ours(run):
+        if is_ours(method):
             table[method] = (OUR_COLOURS[ours % len(OUR_COLOURS)], "o", 2.2)
             ours += 1
         else:
@@ -99,8 +109,7 @@ def time_at(runs, error, target):
 def title_of(results, scene):
     triangles = next(run["triangles"] for run in results["runs"] if run["scene"] == scene)
     machine = results["machine"]
-    return f"{scene}, {triangles:,} triangles, {machine['processor']}, {machine['cores']} cores".replace(
-        ",", "\N{NO-BREAK SPACE}", 0)
+    return f"{scene}, {triangles:,} triangles, {machine['processor']}, {machine['cores']} cores"
 
 
 def legend_below(figure, handles, columns=4):
@@ -109,6 +118,14 @@ def legend_below(figure, handles, columns=4):
     room = (0.22 * rows + 0.1) / figure.get_size_inches()[1]
     figure.get_layout_engine().set(rect=(0.0, room, 1.0, 1.0 - room))
     figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=columns, fontsize=8.5)
+
+
+def save_comparison(figure, axes, path, title=None):
+    """Legend, title and file of a chart with a curve for each method."""
+    legend_below(figure, labelled(axes))
+    if title:
+        figure.suptitle(title, x=0.01, ha="left", fontsize=10.5)
+    save_chart(figure, path, WIDE_DOTS_PER_INCH)
 
 
 def labelled(axes):

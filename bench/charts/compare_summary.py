@@ -34,7 +34,7 @@ def against_paper(runs):
     paper = next((run for run in runs if is_paper_setting(run)), None)
     if paper is None:
         raise ChartError("no run with the paper's setting")
-    ours = [run for run in runs if is_ours(run) and run[GREATEST] <= paper[GREATEST]]
+    ours = [run for run in runs if is_ours(run["method"]) and run[GREATEST] <= paper[GREATEST]]
     best = min((run for run in ours if run["milliseconds"] <= paper["milliseconds"]), key=lambda run: run[MEAN])
     quickest = min((run for run in ours if run[MEAN] <= paper[MEAN]), key=lambda run: run["milliseconds"])
     return paper, best, quickest
@@ -44,9 +44,9 @@ def against_rivals(runs):
     """[(error, milliseconds of ours, of the best rival, its title)], where both reach it."""
     table = []
     for level in LEVELS:
-        ours = time_at([run for run in runs if is_ours(run)], MEAN, level)
+        ours = time_at([run for run in runs if is_ours(run["method"])], MEAN, level)
         rivals = []
-        for method in {run["method"] for run in runs if not is_ours(run)}:
+        for method in {run["method"] for run in runs if not is_ours(run["method"])}:
             own = [run for run in runs if run["method"] == method]
             at = time_at(own, MEAN, level)
             if at is not None:
@@ -65,7 +65,7 @@ def size_rows(results, name):
             f"| {name}: time for the paper's error | a third of {plain(paper['milliseconds'])} ms | "
             f"{plain(quickest['milliseconds'])} ms, {plain(paper['milliseconds'] / quickest['milliseconds'])} times less "
             f"({quickest['title']}: {knobs_of(quickest)}) |"]
-    least = min((run for run in runs if is_ours(run)), key=lambda run: run[MEAN])
+    least = min((run for run in runs if is_ours(run["method"])), key=lambda run: run[MEAN])
     rows.append(f"| {name}: 0.1 % | reachable | {shown(least[MEAN])} (greatest {shown(least[GREATEST])}) at "
                 f"{plain(least['milliseconds'])} ms ({least['title']}: {knobs_of(least)}) |")
     for level, ours, rival, title in against_rivals(runs):
@@ -79,7 +79,7 @@ def size_rows(results, name):
 
 
 def growth_row(results, target):
-    runs = [run for run in results["runs"] if is_ours(run) and held(run)]
+    runs = [run for run in results["runs"] if is_ours(run["method"]) and held(run)]
     per_triangle = {}
     for size in sorted({run["triangles"] for run in runs}):
         at = time_at([run for run in runs if run["triangles"] == size], MEAN, target)

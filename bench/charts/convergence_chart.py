@@ -5,9 +5,8 @@ sub-steps of ours. From the results of `apsl compare`."""
 
 import sys
 
-from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, save_chart, show_few_decades
-from compare_results import (WIDE_DOTS_PER_INCH, by_method, held, labelled, legend_below, read_results, styles,
-                             title_of)
+from chart_tools import ChartError, exit_code_of, new_chart, show_few_decades
+from compare_results import by_method, held, read_results, results_parser, save_comparison, styles, title_of
 
 PASSES = ("iterations", "strain_limiting.sub_steps")
 
@@ -28,11 +27,7 @@ def lowest_by_passes(runs, error):
 
 
 def run(arguments):
-    parser = OneLineParser(description=__doc__)
-    parser.add_argument("results", metavar="results.json")
-    parser.add_argument("--scene", required=True, help="name in the results")
-    parser.add_argument("--out", required=True, metavar="FILE.png")
-    options = parser.parse_args(arguments)
+    options = results_parser(__doc__, scene=True).parse_args(arguments)
     results = read_results(options.results)
     runs = [run for run in results["runs"] if run["scene"] == options.scene and held(run)]
     table = styles(results)
@@ -58,9 +53,7 @@ def run(arguments):
     for axis in axes:
         show_few_decades(axis.xaxis, 1.0, 1000.0)
     axes[0].set_ylabel("|A − A⁰| / A⁰")
-    legend_below(figure, labelled(axes))
-    figure.suptitle(title_of(results, options.scene), x=0.01, ha="left", fontsize=10.5)
-    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
+    save_comparison(figure, axes, options.out, title_of(results, options.scene))
 
 
 if __name__ == "__main__":

@@ -5,8 +5,8 @@ precision), against milliseconds in the limiter; from the results of `apsl compa
 
 import sys
 
-from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, save_chart, show_few_decades
-from compare_results import WIDE_DOTS_PER_INCH, by_method, labelled, legend_below, read_results, styles
+from chart_tools import ChartError, exit_code_of, new_chart, show_few_decades
+from compare_results import by_method, read_results, results_parser, save_comparison, styles
 
 
 def points_of(runs, place):
@@ -17,10 +17,7 @@ def points_of(runs, place):
 
 
 def run(arguments):
-    parser = OneLineParser(description=__doc__)
-    parser.add_argument("results", metavar="results.json")
-    parser.add_argument("--out", required=True, metavar="FILE.png")
-    options = parser.parse_args(arguments)
+    options = results_parser(__doc__).parse_args(arguments)
     results = read_results(options.results)
     runs = [run for run in results["runs"] if run.get("deviation") and run["deviation"]["frames"]]
     limited = [run for run in runs if run["method"] != "none" and run["milliseconds"] > 0.0]
@@ -53,8 +50,7 @@ def run(arguments):
     first = axes if len(frames) == 1 else axes[0]
     show_few_decades(first.yaxis, min(values), max(values))
     first.set_ylabel("RMS distance from the converged solution, mm")
-    legend_below(figure, labelled([first] if len(frames) == 1 else axes))
-    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
+    save_comparison(figure, [first] if len(frames) == 1 else axes, options.out)
 
 
 if __name__ == "__main__":

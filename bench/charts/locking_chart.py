@@ -7,8 +7,8 @@ the method `none` too."""
 import math
 import sys
 
-from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, save_chart
-from compare_results import WIDE_DOTS_PER_INCH, by_method, held, is_ours, read_results
+from chart_tools import ChartError, exit_code_of, new_chart, save_chart
+from compare_results import WIDE_DOTS_PER_INCH, by_method, is_ours, read_results, results_parser
 
 
 def length(run):
@@ -34,10 +34,7 @@ def shares_of(runs, scenes):
 
 
 def run(arguments):
-    parser = OneLineParser(description=__doc__)
-    parser.add_argument("results", metavar="results.json")
-    parser.add_argument("--out", required=True, metavar="FILE.png")
-    options = parser.parse_args(arguments)
+    options = results_parser(__doc__).parse_args(arguments)
     results = read_results(options.results)
     scenes = [scene["name"] for scene in results["scenes"]]
     try:
@@ -47,7 +44,7 @@ def run(arguments):
     if not table:
         raise ChartError(f"{options.results}: no method but none")
     titles = {run["method"]: run["title"] for run in results["runs"]}
-    methods = sorted(table, key=lambda method: not method.startswith("apsl"), reverse=True)
+    methods = sorted(table, key=lambda method: not is_ours(method), reverse=True)
     figure, axes = new_chart(columns=len(scenes), width=3.0 + 1.9 * len(scenes), height=0.9 + 0.24 * len(methods),
                              sharey=True)
     for axis, scene, place in zip([axes] if len(scenes) == 1 else axes, scenes, range(len(scenes))):
@@ -58,7 +55,7 @@ def run(arguments):
                               fontsize=8, color="#666666")
                 continue
             axis.barh(row, 100.0 * min(share, 2.0), height=0.7,
-                      color="#0072B2" if is_ours({"method": method}) else "#D55E00")
+                      color="#0072B2" if is_ours(method) else "#D55E00")
             axis.annotate(f"{100.0 * share:.0f}", (100.0 * min(share, 2.0), row), xytext=(3, 0),
                           textcoords="offset points", va="center", fontsize=8)
         axis.axvline(100.0, color="#8a8a8a", linestyle=":", linewidth=1.4)

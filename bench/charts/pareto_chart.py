@@ -5,9 +5,8 @@ results of `apsl compare`. A method's curve is its own front over all its knobs;
 
 import sys
 
-from chart_tools import (ChartError, OneLineParser, exit_code_of, new_chart, percent, save_chart, show_few_decades)
-from compare_results import (WIDE_DOTS_PER_INCH, by_method, front, held, labelled, legend_below, read_results, styles,
-                             title_of)
+from chart_tools import ChartError, exit_code_of, new_chart, percent, show_few_decades
+from compare_results import by_method, front, held, read_results, results_parser, save_comparison, styles, title_of
 
 MEASURES = {"max_area_change": "greatest over the run",
             "mean_max_area_change": "mean over frames of each frame's greatest"}
@@ -40,24 +39,19 @@ def draw(axis, error, runs, without, table):
 
 
 def run(arguments):
-    parser = OneLineParser(description=__doc__)
-    parser.add_argument("results", metavar="results.json")
-    parser.add_argument("--scene", required=True, help="name in the results")
-    parser.add_argument("--out", required=True, metavar="FILE.png")
-    options = parser.parse_args(arguments)
+    options = results_parser(__doc__, scene=True).parse_args(arguments)
     results = read_results(options.results)
     of_scene = [run for run in results["runs"] if run["scene"] == options.scene]
     limited = [run for run in of_scene if run["method"] != "none" and held(run) and run["milliseconds"] > 0.0]
     if not limited:
         raise ChartError(f"{options.results}: no run of scene {options.scene} that held")
     without = next((run for run in of_scene if run["method"] == "none"), None)
+    table = styles(results)
     figure, axes = new_chart(columns=2, width=11.0, height=5.6)
     for axis, error in zip(axes, MEASURES):
-        draw(axis, error, limited, without, styles(results))
+        draw(axis, error, limited, without, table)
     axes[0].set_ylabel("|A − A⁰| / A⁰")
-    legend_below(figure, labelled(axes))
-    figure.suptitle(title_of(results, options.scene), x=0.01, ha="left", fontsize=10.5)
-    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
+    save_comparison(figure, axes, options.out, title_of(results, options.scene))
 
 
 if __name__ == "__main__":

@@ -5,9 +5,8 @@ triangle it needs for a fixed area change. From the results of `apsl compare` on
 
 import sys
 
-from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, plain, save_chart, show_few_decades
-from compare_results import (WIDE_DOTS_PER_INCH, by_method, front, held, labelled, legend_below, read_results, styles,
-                             time_at)
+from chart_tools import ChartError, exit_code_of, new_chart, plain, show_few_decades
+from compare_results import by_method, front, held, read_results, results_parser, save_comparison, styles, time_at
 
 ERROR = "mean_max_area_change"
 
@@ -18,11 +17,9 @@ def error_within(runs, milliseconds):
 
 
 def run(arguments):
-    parser = OneLineParser(description=__doc__)
-    parser.add_argument("results", metavar="results.json")
+    parser = results_parser(__doc__)
     parser.add_argument("--microseconds", type=float, default=1.0, help="in the limiter, a frame and triangle")
     parser.add_argument("--target", type=float, default=0.05, help="mean over frames of each frame's greatest")
-    parser.add_argument("--out", required=True, metavar="FILE.png")
     options = parser.parse_args(arguments)
     results = read_results(options.results)
     table = styles(results)
@@ -59,11 +56,8 @@ def run(arguments):
     axes[0].set_ylabel("mean of each frame's greatest |A − A⁰| / A⁰")
     axes[1].set_title(f"time to reach {plain(100.0 * options.target)} %")
     axes[1].set_ylabel("µs a triangle and frame")
-    legend_below(figure, labelled(axes))
     machine = results["machine"]
-    figure.suptitle(f"Curtain, finer and finer; {machine['processor']}, {machine['cores']} cores", x=0.01, ha="left",
-                    fontsize=10.5)
-    save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
+    save_comparison(figure, axes, options.out, f"Curtain, finer and finer; {machine['processor']}, {machine['cores']} cores")
 
 
 if __name__ == "__main__":

@@ -39,12 +39,4 @@ Deviation deviation(std::span<const double> positions, std::span<const double> e
 /// m, mean over the free vertices of the way from their rest positions; zero where there are none.
 std::array<double, 3> mean_displacement(const scenes::ClothState& cloth);
 
-/// First quartile, median and third quartile, interpolated; zeros where there are no samples.
-struct Quartiles {
-    double first = 0.0;
-    double median = 0.0;
-    double third = 0.0;
-};
-Quartiles quartiles(std::vector<double> samples);
-
 }  // namespace apsl::compare

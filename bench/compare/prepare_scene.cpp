@@ -2,8 +2,8 @@
 #include "compare/contenders.hpp"
 #include "run/input_error.hpp"
 #include "run/override_scene.hpp"
+#include "run/scene_document.hpp"
 
-#include <charconv>
 #include <cmath>
 
 namespace apsl::compare {
@@ -23,25 +23,6 @@ void set(nlohmann::json& document, const std::string& path, const nlohmann::json
     scenes::override_scene(document, path + "=" + value.dump());
 }
 
-// 1.2f as 1.2.
-double shortest(float value) {
-    char text[32];
-    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-    double number = 0.0;
-    std::from_chars(text, end, number);
-    return number;
-}
-
-// A frame keeps its length.
-void set_steps_per_frame(nlohmann::json& document, std::int64_t steps) {
-    const scenes::Scene defaults;
-    const double time_step = document.value("time_step", defaults.time_step);
-    const auto before = document.value("steps_per_frame", std::int64_t{defaults.steps_per_frame});
-    if (steps == before) return;
-    document["time_step"] = time_step * static_cast<double>(before) / static_cast<double>(steps);
-    document["steps_per_frame"] = steps;
-}
-
 void fill_in_limiting(nlohmann::json& document) {
     const Parameters standard;
     nlohmann::json& limiting = document["strain_limiting"];
@@ -50,8 +31,8 @@ void fill_in_limiting(nlohmann::json& document) {
         if (limiting.is_object() && !limiting.contains(key)) limiting[key] = value;
     };
     fill_in("sub_steps", standard.sub_steps);
-    fill_in("regularization", shortest(standard.regularization));
-    fill_in("tolerance", shortest(standard.tolerance));
+    fill_in("regularization", scenes::shortest(standard.regularization));
+    fill_in("tolerance", scenes::shortest(standard.tolerance));
     fill_in("max_iterations", standard.max_iterations);
 }
 
@@ -99,7 +80,7 @@ PreparedScene prepare_scene(const Contender& contender, const nlohmann::json& do
         const nlohmann::json value = tidy(given);
         if (name == "steps_per_frame") {
             if (!value.is_number_integer()) throw InputError(contender.name + ": steps_per_frame must be whole");
-            set_steps_per_frame(prepared.document, value.get<std::int64_t>());
+            scenes::set_steps_per_frame(prepared.document, value.get<std::int64_t>());
         } else if (contender.kind == ContenderKind::springs) {
             stiffen_springs(prepared.document, file, value.get<double>());
         } else if (ours) {

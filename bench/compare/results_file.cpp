@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "compare/results_file.hpp"
 
-#include "compare/machine.hpp"
+#include "measurement/machine.hpp"
+#include "measurement/quartiles.hpp"
 #include "run/input_error.hpp"
 #include "run/whole_file.hpp"
 
@@ -17,7 +18,7 @@ using Json = nlohmann::ordered_json;
 using scenes::InputError;
 
 Json quartiles_json(const std::vector<double>& samples) {
-    const Quartiles q = quartiles(samples);
+    const bench::Quartiles q = bench::quartiles(samples);
     return {{"first_quartile", q.first}, {"median", q.median}, {"third_quartile", q.third}};
 }
 
@@ -81,8 +82,9 @@ std::string text_of(const Json& document) {
 }
 
 Json machine_json(const std::optional<scenes::OpenClDevice>& device) {
-    Json machine{
-        {"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()}, {"opencl_device", nullptr}};
+    Json machine{{"processor", bench::processor_name()},
+                 {"cores", std::thread::hardware_concurrency()},
+                 {"opencl_device", nullptr}};
     if (device) {
         machine["opencl_device"] = {{"name", device->name}, {"platform", device->platform}, {"driver", device->driver}};
     }
@@ -102,7 +104,7 @@ Json read_results(const std::filesystem::path& file) {
 }  // namespace
 
 ResultsFile::ResultsFile(std::filesystem::path file, const std::optional<scenes::OpenClDevice>& device)
-    : file_(std::move(file)), commit_(commit()) {
+    : file_(std::move(file)), commit_(bench::commit()) {
     scenes::check_file_place(file_);
     const Json machine = machine_json(device);
     document_ = {

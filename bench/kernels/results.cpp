@@ -1,41 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "results.hpp"
 
+#include "measurement/machine.hpp"
+#include "measurement/quartiles.hpp"
+
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 namespace apsl::bench {
 namespace {
-
-std::string output_of(const std::string& command) {
-    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-    std::string output;
-    std::array<char, 256> line{};
-    while (pipe && std::fgets(line.data(), static_cast<int>(line.size()), pipe.get())) output += line.data();
-    while (!output.empty() && output.back() == '\n') output.pop_back();
-    return output;
-}
-
-/// The commit the sources stand at, "-dirty" behind it where files differ.
-std::string commit() {
-    const std::string description =
-        output_of("git -C '" APSL_SOURCE_DIRECTORY "' describe --always --abbrev=12 --dirty --exclude='*' 2>/dev/null");
-    return description.empty() ? "unknown" : description;
-}
-
-std::string processor_name() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown processor";
-}
 
 template <class Value>
 nlohmann::json value_or_null(const std::optional<Value>& value) {
@@ -45,15 +23,8 @@ nlohmann::json value_or_null(const std::optional<Value>& value) {
 }  // namespace
 
 MedianAndSpread median_and_spread(std::vector<double> samples) {
-    std::sort(samples.begin(), samples.end());
-    const auto quantile = [&](double fraction) {
-        const double place = fraction * static_cast<double>(samples.size() - 1);
-        const auto below = static_cast<std::size_t>(place);
-        const std::size_t above = std::min(below + 1, samples.size() - 1);
-        const double weight = place - static_cast<double>(below);
-        return (1.0 - weight) * samples[below] + weight * samples[above];
-    };
-    return {quantile(0.5), quantile(0.75) - quantile(0.25)};
+    const Quartiles q = quartiles(std::move(samples));
+    return {q.median, q.third - q.first};
 }
 
 Results::Results() : commit_(commit()) {

@@ -118,9 +118,7 @@ class ContinuumStrainLimiting : public Method {
 public:
     ContinuumStrainLimiting(const Cloth& cloth, int iterations, double limit)
         : triangles_(framed_triangles(cloth)), iterations_(iterations), limit_(static_cast<float>(limit)) {
-        coloring_ = greedy_coloring(triangles_.size(), cloth.topology->vertex_count(),
-                                    [&](std::size_t i) { return std::span(triangles_[i].vertices); });
-        triangles_ = in_color_order(triangles_, coloring_);
+        coloring_ = sort_by_color(triangles_, cloth.topology->vertex_count(), &FramedTriangle::vertices);
     }
 
     void project(std::span<Vector3f> positions) override {

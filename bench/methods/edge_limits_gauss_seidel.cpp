@@ -29,9 +29,7 @@ public:
           iterations_(iterations),
           least_(static_cast<float>(1.0 - limit)),
           greatest_(static_cast<float>(1.0 + limit)) {
-        coloring_ = greedy_coloring(constraints_.size(), cloth.topology->vertex_count(),
-                                    [&](std::size_t i) { return std::span(constraints_[i].vertices); });
-        constraints_ = in_color_order(constraints_, coloring_);
+        coloring_ = sort_by_color(constraints_, cloth.topology->vertex_count(), &EdgeConstraint::vertices);
     }
 
     void project(std::span<Eigen::Vector3f> positions) override {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace apsl::methods {
@@ -23,13 +24,18 @@ struct Coloring {
 Coloring greedy_coloring(std::size_t constraint_count, std::size_t vertex_count,
                          const std::function<std::span<const std::uint32_t>(std::size_t)>& vertices_of);
 
-/// `items` in the order of the coloring.
-template <class Item>
-std::vector<Item> in_color_order(const std::vector<Item>& items, const Coloring& coloring) {
-    std::vector<Item> ordered;
-    ordered.reserve(items.size());
-    for (const std::uint32_t i : coloring.order) ordered.push_back(items[i]);
-    return ordered;
+/// Colors `constraints` by greedy_coloring and puts them in color order. `vertices_of(constraint)`, or a member: its
+/// vertices.
+template <class Constraint, class Vertices>
+Coloring sort_by_color(std::vector<Constraint>& constraints, std::size_t vertex_count, const Vertices& vertices_of) {
+    Coloring coloring = greedy_coloring(constraints.size(), vertex_count, [&](std::size_t i) {
+        return std::span<const std::uint32_t>(std::invoke(vertices_of, constraints[i]));
+    });
+    std::vector<Constraint> ordered;
+    ordered.reserve(constraints.size());
+    for (const std::uint32_t i : coloring.order) ordered.push_back(constraints[i]);
+    constraints = std::move(ordered);
+    return coloring;
 }
 
 }  // namespace apsl::methods

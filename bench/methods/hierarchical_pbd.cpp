@@ -33,9 +33,7 @@ EdgeLevel edge_level(const Cloth& cloth, const Level& level) {
         if (inverse_masses != std::array<float, 2>{})
             result.constraints.push_back({level.edges[e], inverse_masses, level.rest_lengths[e]});
     }
-    result.coloring = greedy_coloring(result.constraints.size(), cloth.topology->vertex_count(),
-                                      [&](std::size_t i) { return std::span(result.constraints[i].vertices); });
-    result.constraints = in_color_order(result.constraints, result.coloring);
+    result.coloring = sort_by_color(result.constraints, cloth.topology->vertex_count(), &EdgeConstraint::vertices);
     return result;
 }
 

@@ -130,9 +130,7 @@ private:
             }
             if (movable) triangles_.push_back(triangle);
         }
-        coloring_ = greedy_coloring(triangles_.size(), topology_->edges().size(),
-                                    [&](std::size_t i) { return std::span(triangles_[i].midpoints); });
-        triangles_ = in_color_order(triangles_, coloring_);
+        coloring_ = sort_by_color(triangles_, topology_->edges().size(), &MidpointTriangle::midpoints);
     }
 
     void set_corners(const std::vector<std::uint32_t>& edge_of, const std::vector<double>& masses) {

@@ -19,9 +19,7 @@ class PbdAreaColored : public Method {
 public:
     PbdAreaColored(const Cloth& cloth, int iterations)
         : constraints_(area_constraints(cloth)), iterations_(iterations) {
-        coloring_ = greedy_coloring(constraints_.size(), cloth.topology->vertex_count(),
-                                    [&](std::size_t i) { return std::span(constraints_[i].vertices); });
-        constraints_ = in_color_order(constraints_, coloring_);
+        coloring_ = sort_by_color(constraints_, cloth.topology->vertex_count(), &AreaConstraint::vertices);
     }
 
     void project(std::span<Eigen::Vector3f> positions) override {

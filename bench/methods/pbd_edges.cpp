@@ -26,9 +26,7 @@ public:
         : constraints_(edge_constraints(cloth)),
           iterations_(iterations),
           stiffness_(static_cast<float>(1.0 - std::pow(1.0 - stiffness, 1.0 / iterations))) {
-        coloring_ = greedy_coloring(constraints_.size(), cloth.topology->vertex_count(),
-                                    [&](std::size_t i) { return std::span(constraints_[i].vertices); });
-        constraints_ = in_color_order(constraints_, coloring_);
+        coloring_ = sort_by_color(constraints_, cloth.topology->vertex_count(), &EdgeConstraint::vertices);
     }
 
     void project(std::span<Eigen::Vector3f> positions) override {

@@ -38,9 +38,7 @@ public:
         for (std::size_t v = 0; v < inverse_masses_.size(); ++v)
             inverse_masses_[v] = static_cast<float>(cloth.inverse_masses[v]);
         for (std::uint32_t v = 0; v < inverse_masses_.size(); ++v) add_ring(cloth, v);
-        coloring_ = greedy_coloring(rings_.size(), inverse_masses_.size(),
-                                    [&](std::size_t i) { return vertices_of(rings_[i]); });
-        rings_ = in_color_order(rings_, coloring_);
+        coloring_ = sort_by_color(rings_, inverse_masses_.size(), [&](const Ring& ring) { return vertices_of(ring); });
     }
 
     void project(std::span<Eigen::Vector3f> positions) override {

@@ -104,18 +104,12 @@ void sweep(std::vector<Constraint>& constraints, const Coloring& coloring, int i
     });
 }
 
-template <class Constraint>
-Coloring colored(std::vector<Constraint>& constraints, const Cloth& cloth) {
-    const Coloring coloring = greedy_coloring(constraints.size(), cloth.topology->vertex_count(),
-                                              [&](std::size_t i) { return std::span(constraints[i].vertices); });
-    constraints = in_color_order(constraints, coloring);
-    return coloring;
-}
-
 class Strain : public Method {
 public:
     Strain(const Cloth& cloth, int iterations)
-        : triangles_(framed_triangles(cloth)), coloring_(colored(triangles_, cloth)), iterations_(iterations) {}
+        : triangles_(framed_triangles(cloth)),
+          coloring_(sort_by_color(triangles_, cloth.topology->vertex_count(), &FramedTriangle::vertices)),
+          iterations_(iterations) {}
 
     void project(std::span<Vector3f> positions) override {
         sweep(triangles_, coloring_, iterations_, positions, [](Corners& corners, const FramedTriangle& triangle) {
@@ -134,7 +128,9 @@ private:
 class Area : public Method {
 public:
     Area(const Cloth& cloth, int iterations)
-        : constraints_(area_constraints(cloth)), coloring_(colored(constraints_, cloth)), iterations_(iterations) {}
+        : constraints_(area_constraints(cloth)),
+          coloring_(sort_by_color(constraints_, cloth.topology->vertex_count(), &AreaConstraint::vertices)),
+          iterations_(iterations) {}
 
     void project(std::span<Vector3f> positions) override {
         sweep(constraints_, coloring_, iterations_, positions, [](Corners& corners, const AreaConstraint& constraint) {

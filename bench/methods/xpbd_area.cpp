@@ -28,9 +28,8 @@ public:
     XpbdArea(const Cloth& cloth, int iterations, double compliance)
         : iterations_(iterations), compliance_(static_cast<float>(compliance / (cloth.time_step * cloth.time_step))) {
         for (const AreaConstraint& triangle : area_constraints(cloth)) constraints_.push_back({triangle, 0.0f});
-        coloring_ = greedy_coloring(constraints_.size(), cloth.topology->vertex_count(),
-                                    [&](std::size_t i) { return std::span(constraints_[i].triangle.vertices); });
-        constraints_ = in_color_order(constraints_, coloring_);
+        coloring_ = sort_by_color(constraints_, cloth.topology->vertex_count(),
+                                  [](const Compliant& constraint) -> auto& { return constraint.triangle.vertices; });
     }
 
     void project(std::span<Eigen::Vector3f> positions) override {

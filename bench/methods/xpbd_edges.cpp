@@ -29,9 +29,8 @@ public:
     XpbdEdges(const Cloth& cloth, int iterations, double compliance)
         : iterations_(iterations), compliance_(static_cast<float>(compliance / (cloth.time_step * cloth.time_step))) {
         for (const EdgeConstraint& edge : edge_constraints(cloth)) constraints_.push_back({edge, 0.0f});
-        coloring_ = greedy_coloring(constraints_.size(), cloth.topology->vertex_count(),
-                                    [&](std::size_t i) { return std::span(constraints_[i].edge.vertices); });
-        constraints_ = in_color_order(constraints_, coloring_);
+        coloring_ = sort_by_color(constraints_, cloth.topology->vertex_count(),
+                                  [](const Compliant& constraint) -> auto& { return constraint.edge.vertices; });
     }
 
     void project(std::span<Eigen::Vector3f> positions) override {

@@ -3,10 +3,10 @@
 
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
+#include "run/scene_document.hpp"
 #include "run/simulation.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -19,15 +19,6 @@ double quiet_time(std::vector<double> seconds) {
     const auto place = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 4);
     std::nth_element(seconds.begin(), place, seconds.end());
     return *place;
-}
-
-// 1.2f as 1.2.
-double shortest(float value) {
-    char text[32];
-    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-    double number = 0.0;
-    std::from_chars(text, end, number);
-    return number;
 }
 
 }  // namespace
@@ -52,12 +43,7 @@ LimiterSettings limiter_settings(const nlohmann::ordered_json& document) {
 
 nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const LimiterSettings& settings) {
     const LimiterSettings before = limiter_settings(document);
-    if (settings.steps_per_frame != before.steps_per_frame) {
-        const Scene standard;
-        document["time_step"] =
-            document.value("time_step", standard.time_step) * before.steps_per_frame / settings.steps_per_frame;
-        document["steps_per_frame"] = settings.steps_per_frame;
-    }
+    set_steps_per_frame(document, settings.steps_per_frame);
     nlohmann::ordered_json& limiting = document["strain_limiting"];
     if (limiting.is_null()) limiting = nlohmann::ordered_json::object();
     limiting["sub_steps"] = settings.sub_steps;

@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "embed/opencl_calls.hpp"
+#include "embed/variants.hpp"
 #include "support/device_cloth.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace apsl;
 using namespace apsl::test;
-
-namespace {
-
-const Options variants[] = {
-    {.matrix = Matrix::consistent, .apply = Apply::assembled_csr, .execution = Execution::many_groups},
-    {.matrix = Matrix::consistent, .apply = Apply::matrix_free, .execution = Execution::many_groups},
-    {.matrix = Matrix::printed, .apply = Apply::assembled_csr, .execution = Execution::many_groups},
-    {.matrix = Matrix::printed, .apply = Apply::matrix_free, .execution = Execution::many_groups},
-    {.matrix = Matrix::consistent, .apply = Apply::matrix_free, .execution = Execution::one_group}};
-
-}  // namespace
 
 TEST_CASE("enqueue waits for nothing, allocates nothing and reads nothing back", "[embed]") {
     const std::vector<MovingCloth> cloths{moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "embed/variants.hpp"
 #include "support/device_cloth.hpp"
 
 #include <catch2/catch.hpp>
@@ -14,13 +15,6 @@ struct Filtered {
     std::vector<float> velocities;
     std::vector<Stats> stats;
 };
-
-const Options variants[] = {
-    {.matrix = Matrix::consistent, .apply = Apply::assembled_csr, .execution = Execution::many_groups},
-    {.matrix = Matrix::consistent, .apply = Apply::matrix_free, .execution = Execution::many_groups},
-    {.matrix = Matrix::printed, .apply = Apply::assembled_csr, .execution = Execution::many_groups},
-    {.matrix = Matrix::printed, .apply = Apply::matrix_free, .execution = Execution::many_groups},
-    {.matrix = Matrix::consistent, .apply = Apply::matrix_free, .execution = Execution::one_group}};
 
 Filtered in_order_result(StrainLimiter& limiter, const MovingCloth& cloth, const Parameters& parameters) {
     const CallerBuffers buffers({&cloth, 1}, limiter.options());

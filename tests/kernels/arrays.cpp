@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/arrays.hpp"
 
+#include "host/device_parameters.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -42,15 +44,6 @@ std::vector<ScaledSolve> solves_of(std::span<const Cloth> cloths, Matrix matrix,
         solves.push_back(scaled_solve(
             cloth, matrix, per_triangle ? cloth.regularization : std::vector<double>(cloth.rest_areas.size(), alpha)));
     return solves;
-}
-
-apsl_parameters device_parameters(const Parameters& p) {
-    const bool scheduled = p.first_regularization > 0.0f && p.sub_steps > 1;
-    const float damping_step = scheduled ? std::log2((p.first_regularization - 1.0f) / (p.regularization - 1.0f)) /
-                                               static_cast<float>(p.sub_steps - 1)
-                                         : 0.0f;
-    return {p.time_step, p.regularization, damping_step,         p.target_area_change, p.tolerance * p.tolerance,
-            p.sub_steps, p.max_iterations, p.adaptive_iterations};
 }
 
 // ‖r‖² of r = √(α D) r̄.
@@ -149,7 +142,7 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       velocity_placement(velocity),
       array_offset(position.offset),
       cloths(adjacency.cloths),
-      parameters(std::vector<apsl_parameters>(source_cloths.size(), device_parameters(p))),
+      parameters(std::vector<apsl_parameters>(source_cloths.size(), host::device_parameters(p))),
       states(fresh_states(solves)),
       stats(std::vector<apsl_stats>(source_cloths.size(), apsl_stats{})),
       partials(poison<float>(source_cloths.size() * APSL_PARTIAL_KINDS * group_count)),

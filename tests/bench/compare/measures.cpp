@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "compare/measures.hpp"
+#include "measurement/quartiles.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -77,6 +78,7 @@ TEST_CASE("deviation is zero from itself and a distance from elsewhere") {
 }
 
 TEST_CASE("quartiles") {
+    using bench::quartiles;
     CHECK(quartiles({4, 1, 3, 2, 5}).median == 3.0);
     CHECK(quartiles({4, 1, 3, 2, 5}).first == 2.0);
     CHECK(quartiles({4, 1, 3, 2, 5}).third == 4.0);

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace apsl::compare {
+namespace apsl::bench {
 
 /// The commit the sources stand at, "-dirty" behind it where files differ; "unknown" away from them.
 std::string commit();
@@ -11,4 +11,4 @@ std::string commit();
 /// As the operating system names it.
 std::string processor_name();
 
-}  // namespace apsl::compare
+}  // namespace apsl::bench

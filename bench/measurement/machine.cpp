@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "compare/machine.hpp"
+#include "measurement/machine.hpp"
 
 #include <array>
 #include <cstdio>
 #include <fstream>
 #include <memory>
 
-namespace apsl::compare {
+namespace apsl::bench {
 namespace {
 
 std::string output_of(const char* command) {
@@ -37,4 +37,4 @@ std::string processor_name() {
     return "unknown processor";
 }
 
-}  // namespace apsl::compare
+}  // namespace apsl::bench

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "device_parameters.hpp"
+
+#include <cmath>
+
+namespace apsl::host {
+
+apsl_parameters device_parameters(const Parameters& p) {
+    const bool scheduled = p.first_regularization > 0.0f && p.sub_steps > 1;
+    const float damping_step = scheduled ? std::log2((p.first_regularization - 1.0f) / (p.regularization - 1.0f)) /
+                                               static_cast<float>(p.sub_steps - 1)
+                                         : 0.0f;
+    return {p.time_step, p.regularization, damping_step,         p.target_area_change, p.tolerance * p.tolerance,
+            p.sub_steps, p.max_iterations, p.adaptive_iterations};
+}
+
+}  // namespace apsl::host
