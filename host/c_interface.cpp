@@ -17,7 +17,10 @@ struct apsl_limiter {
 namespace {
 
 static_assert(sizeof(apsl_limiter_stats) == sizeof(apsl::Stats));
+static_assert(static_cast<int>(apsl::Status::worsened) == APSL_LIMITER_WORSENED);
 static_assert(static_cast<int>(apsl::Status::diverged) == APSL_LIMITER_DIVERGED);
+static_assert(static_cast<int>(apsl::Offender::triangle) == APSL_OFFENDER_TRIANGLE);
+static_assert(static_cast<int>(apsl::Stepping::small_steps) == APSL_STEPPING_SMALL_STEPS);
 static_assert(static_cast<int>(apsl::ErrorCode::unsupported) == APSL_ERROR_UNSUPPORTED);
 static_assert(static_cast<int>(apsl::Matrix::printed) == APSL_MATRIX_PRINTED);
 static_assert(static_cast<int>(apsl::Apply::matrix_free) == APSL_APPLY_MATRIX_FREE);
@@ -83,7 +86,8 @@ apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
             .tolerance = p.tolerance,
             .max_iterations = p.max_iterations,
             .adaptive_iterations = p.adaptive_iterations,
-            .first_regularization = p.first_regularization};
+            .first_regularization = p.first_regularization,
+            .stepping = static_cast<apsl::Stepping>(p.stepping)};
 }
 
 apsl::BufferView view_from(const apsl_buffer_view& view) {
@@ -110,8 +114,15 @@ apsl_limiter_options apsl_limiter_default_options(void) {
 
 apsl_limiter_parameters apsl_limiter_default_parameters(void) {
     const apsl::Parameters p;
-    return {p.time_step, p.regularization, p.sub_steps,           p.target_area_change,
-            p.tolerance, p.max_iterations, p.adaptive_iterations, p.first_regularization};
+    return {p.time_step,
+            p.regularization,
+            p.sub_steps,
+            p.target_area_change,
+            p.tolerance,
+            p.max_iterations,
+            p.adaptive_iterations,
+            p.first_regularization,
+            static_cast<int32_t>(p.stepping)};
 }
 
 apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_count, size_t vertex_count,

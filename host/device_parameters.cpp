@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "device_parameters.hpp"
 
+#include "stepping.hpp"
+
 #include <cmath>
 
 namespace apsl::host {
@@ -10,8 +12,9 @@ apsl_parameters device_parameters(const Parameters& p) {
     const float damping_step = scheduled ? std::log2((p.first_regularization - 1.0f) / (p.regularization - 1.0f)) /
                                                static_cast<float>(p.sub_steps - 1)
                                          : 0.0f;
-    return {p.time_step, p.regularization, damping_step,         p.target_area_change, p.tolerance * p.tolerance,
-            p.sub_steps, p.max_iterations, p.adaptive_iterations};
+    const float tolerance = solve_tolerance(p);
+    return {p.time_step, p.regularization, damping_step,          p.target_area_change, tolerance * tolerance,
+            p.sub_steps, p.max_iterations, p.adaptive_iterations, walked_sub_steps(p),  {}};
 }
 
 }  // namespace apsl::host

@@ -5,6 +5,7 @@
 #include "limiter_options.hpp"
 #include "opencl_error.hpp"
 #include "program.hpp"
+#include "stepping.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -18,9 +19,12 @@ using namespace host;
 static_assert(sizeof(Stats) == sizeof(apsl_stats));
 static_assert(offsetof(Stats, residual) == offsetof(apsl_stats, residual));
 static_assert(offsetof(Stats, status) == offsetof(apsl_stats, status));
+static_assert(offsetof(Stats, offender_index) == offsetof(apsl_stats, offender_index));
 static_assert(std::has_single_bit(sizeof(apsl_parameters)), "clEnqueueFillBuffer takes powers of two");
 static_assert(static_cast<int>(Status::not_converged) == APSL_STATUS_NOT_CONVERGED);
+static_assert(static_cast<int>(Status::worsened) == APSL_STATUS_WORSENED);
 static_assert(static_cast<int>(Status::diverged) == APSL_STATUS_DIVERGED);
+static_assert(static_cast<int>(Offender::triangle) == APSL_OFFENDER_TRIANGLE);
 
 // Bytes of a triangle's corner gradients (kernels/gradients.h).
 constexpr std::size_t gradient_bytes = 32;
@@ -115,6 +119,8 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     ordered_rest_areas = zeroed_buffer(triangle_count);
     ordered_regularization = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
     predicted = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
+    motion = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
+    correction = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
     gradients = buffer(triangle_count * gradient_bytes);
     residual = zeroed_buffer(triangle_count);
     damped_diagonal = zeroed_buffer(triangle_count);
@@ -136,14 +142,18 @@ void StrainLimiter::Implementation::create_kernels() {
     if (one_group()) {
         filter_in_one_group = kernel("filter_in_one_group");
         set_arguments(filter_in_one_group, 0, cloths, parameters, states, stats, vertex_order, triangle_order,
-                      triangles, patches, patch_vertices, local_triangles, corner_offsets, corners, predicted,
-                      gradients, residual, damped_diagonal, product, direction, direction_product, pressures[0],
-                      ordered_rest_areas, ordered_regularization);
-        set_argument(filter_in_one_group, 32, cl_uint{triangle_count});
+                      triangles, patches, patch_vertices, local_triangles, corner_offsets, corners, predicted, motion,
+                      correction, gradients, residual, damped_diagonal, product, direction, direction_product,
+                      pressures[0], ordered_rest_areas, ordered_regularization);
+        set_argument(filter_in_one_group, 34, cl_uint{triangle_count});
         return;
     }
     predict_positions = kernel("predict_positions");
-    set_arguments(predict_positions, 0, cloths, parameters, states, stats, vertex_order, predicted);
+    set_arguments(predict_positions, 0, cloths, parameters, states, stats, partials, vertex_order, predicted);
+    begin_call = kernel("begin_call");
+    set_arguments(begin_call, 0, parameters, states, stats, partials, groups);
+    start_walk = kernel("start_walk");
+    set_arguments(start_walk, 0, cloths, parameters, states, vertex_order, predicted, motion, correction);
     order_triangle_values = kernel("order_triangle_values");
     set_arguments(order_triangle_values, 0, cloths, triangle_order, ordered_rest_areas, ordered_regularization);
     assemble_gradients = kernel("assemble_gradients");
@@ -154,7 +164,8 @@ void StrainLimiter::Implementation::create_kernels() {
     begin_solve = kernel("begin_solve");
     set_arguments(begin_solve, 0, parameters, states, stats, partials, groups);
     end_call = kernel("end_call");
-    set_arguments(end_call, 0, stats, partials, groups);
+    set_arguments(end_call, 0, cloths, states, stats, partials, vertex_order, triangle_order, triangles, predicted,
+                  ordered_rest_areas, groups);
     create_apply_kernels();
     cg_update = kernel("cg_update");
     set_arguments(cg_update, 0, cloths, states, partials, residual, damped_diagonal, product, direction,
@@ -162,7 +173,7 @@ void StrainLimiter::Implementation::create_kernels() {
     gather_displacements = kernel("gather_displacements");
     set_arguments(gather_displacements, 0, cloths, parameters, states, stats, partials, corner_offsets, corners,
                   gradients);
-    set_argument(gather_displacements, 9, predicted);
+    set_arguments(gather_displacements, 9, predicted, motion, correction);
     if (options.kept_pressures > 0) {
         measure_guess = kernel("measure_guess");
         set_arguments(measure_guess, 0, cloths, states, partials, residual);
@@ -170,7 +181,7 @@ void StrainLimiter::Implementation::create_kernels() {
         set_arguments(start_from_guess, 0, cloths, states, partials, residual, damped_diagonal, product);
     }
     update_velocities = kernel("update_velocities");
-    set_arguments(update_velocities, 0, cloths, parameters, stats, vertex_order, predicted);
+    set_arguments(update_velocities, 0, cloths, parameters, states, vertex_order, predicted, correction);
 }
 
 void StrainLimiter::Implementation::create_apply_kernels() {
@@ -216,20 +227,22 @@ void StrainLimiter::Implementation::bind(const Buffers& buffers) const {
     // A kernel needs some buffer there even where it reads none.
     const BufferView& regularization = buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
     if (one_group()) {
-        set(filter_in_one_group, 22, buffers.positions);
-        set(filter_in_one_group, 24, buffers.velocities);
-        set(filter_in_one_group, 26, buffers.inverse_masses);
-        set(filter_in_one_group, 28, buffers.rest_areas);
-        set(filter_in_one_group, 30, regularization);
+        set(filter_in_one_group, 24, buffers.positions);
+        set(filter_in_one_group, 26, buffers.velocities);
+        set(filter_in_one_group, 28, buffers.inverse_masses);
+        set(filter_in_one_group, 30, buffers.rest_areas);
+        set(filter_in_one_group, 32, regularization);
         return;
     }
-    set(predict_positions, 6, buffers.positions);
-    set(predict_positions, 8, buffers.velocities);
-    set(predict_positions, 10, buffers.inverse_masses);
+    set(predict_positions, 7, buffers.positions);
+    set(predict_positions, 9, buffers.velocities);
+    set(predict_positions, 11, buffers.inverse_masses);
+    set(start_walk, 7, buffers.positions);
+    set(start_walk, 9, buffers.velocities);
     set(order_triangle_values, 4, buffers.rest_areas);
     set(order_triangle_values, 6, regularization);
-    set(update_velocities, 5, buffers.positions);
-    set(update_velocities, 7, buffers.velocities);
+    set(update_velocities, 6, buffers.positions);
+    set(update_velocities, 8, buffers.velocities);
 }
 
 void StrainLimiter::Implementation::queue_parameters(CommandSequence& commands,
@@ -287,14 +300,19 @@ void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int s
         launch_one_group(commands, finish_solve);
     }
     // The slot of the residual after the last iteration.
-    set_argument(gather_displacements, 10, static_cast<cl_uint>(queued & 1));
+    set_arguments(gather_displacements, 12, cl_int{sub_step}, static_cast<cl_uint>(queued & 1));
     launch(commands, gather_displacements);
 }
 
-void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, int sub_steps,
-                                                      int max_iterations) const {
+void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, int sub_steps, int max_iterations,
+                                                      bool walking) const {
     launch(commands, predict_positions);
     launch(commands, order_triangle_values);
+    if (walking) {
+        launch(commands, measure_area_change);
+        launch_one_group(commands, begin_call);
+        launch(commands, start_walk);
+    }
     for (cl_int sub_step = 0; sub_step < sub_steps; ++sub_step) {
         set_argument(assemble_gradients, 11, sub_step);
         set_argument(begin_solve, 5, sub_step);
@@ -312,10 +330,12 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
         invalid(std::to_string(given.size()) + " parameters given for " + std::to_string(cloth_count) +
                 " cloths, expected one for each or a single one");
     int sub_steps = 0, max_iterations = 1;
+    bool walking = false;
     for (const Parameters& p : given) {
         validate(p);
         sub_steps = std::max(sub_steps, p.sub_steps);
         max_iterations = std::max(max_iterations, p.max_iterations);
+        walking = walking || walked_sub_steps(p) > 0;
     }
     check_buffers(buffers);
     bind(buffers);
@@ -325,7 +345,7 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
     if (one_group())
         launch_one_group(commands, filter_in_one_group);
     else
-        queue_many_groups(commands, sub_steps, max_iterations);
+        queue_many_groups(commands, sub_steps, max_iterations, walking);
     return commands.end();
 }
 

@@ -36,13 +36,14 @@ struct StrainLimiter::Implementation {
     host::BufferHandle vertex_order, triangle_order, ordered_rest_areas, ordered_regularization, triangles,
         corner_offsets, corners;
     host::BufferHandle patches, patch_vertices, local_triangles, row_offsets, columns, shared, values;
-    host::BufferHandle predicted, gradients, residual, damped_diagonal, product, direction, direction_product;
+    host::BufferHandle predicted, motion, correction, gradients, residual, damped_diagonal, product, direction,
+        direction_product;
     /// One for each sub-step whose pressures are kept, one alone where none are; in one_group all in a single buffer.
     std::vector<host::BufferHandle> pressures;
 
     host::ProgramHandle program;
     host::Kernel set_parameters, predict_positions, order_triangle_values, assemble_gradients, measure_area_change,
-        begin_solve, end_call;
+        begin_call, start_walk, begin_solve, end_call;
     host::Kernel assemble_pressure_csr, apply_dot, cg_update, finish_solve, gather_displacements, update_velocities;
     host::Kernel measure_guess, start_from_guess;
     host::Kernel filter_in_one_group;
@@ -68,7 +69,7 @@ private:
     void use_pressures(const host::BufferHandle& pressure) const;
     void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;
     void queue_solve(host::CommandSequence& commands, int sub_step, int max_iterations) const;
-    void queue_many_groups(host::CommandSequence& commands, int sub_steps, int max_iterations) const;
+    void queue_many_groups(host::CommandSequence& commands, int sub_steps, int max_iterations, bool walking) const;
 
     void launch(host::CommandSequence& commands, const host::Kernel& kernel) const {
         commands.launch(kernel, groups, options.work_group_size, cloth_count);

@@ -92,9 +92,10 @@ bool uses_pattern(const Options& options) {
 
 std::vector<std::string_view> kernel_files(const Options& options) {
     if (options.execution == Execution::one_group) return {"set_parameters.cl", "filter_in_one_group.cl"};
-    std::vector<std::string_view> files{"set_parameters.cl",     "predict_positions.cl",    "order_triangle_values.cl",
-                                        "assemble_gradients.cl", "measure_area_change.cl",  "solve_control.cl",
-                                        "cg_update.cl",          "gather_displacements.cl", "update_velocities.cl"};
+    std::vector<std::string_view> files{"set_parameters.cl",        "predict_positions.cl",  "start_walk.cl",
+                                        "order_triangle_values.cl", "assemble_gradients.cl", "measure_area_change.cl",
+                                        "solve_control.cl",         "cg_update.cl",          "gather_displacements.cl",
+                                        "update_velocities.cl"};
     if (options.kept_pressures > 0) files.push_back("first_guess.cl");
     if (options.apply == Apply::assembled_csr)
         files.insert(files.end(), {"assemble_pressure_csr.cl", "csr_spmv_dot.cl"});

@@ -94,6 +94,7 @@ Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloth
         cloth.triangle_begin = index(triangles, max_index / 4, "triangles");
         cloth.triangle_count = index(topology->triangle_count(), max_index / 4, "triangles");
         const auto first_rest_area = index(rest_areas, max_index, "triangles");
+        cloth.rest_area_begin = first_rest_area;
 
         const Patches patches = build_patches(*topology, patch_triangles);
         const Places places{inverse(patches.vertex_order), inverse(patches.triangle_order)};

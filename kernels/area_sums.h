@@ -26,14 +26,26 @@ APSL_INLINE uint blocks_of(apsl_cloth cloth) {
     return (cloth.triangle_count + APSL_LANES - 1u) / APSL_LANES;
 }
 
+// |A − A⁰| / A⁰; 0 where there is no rest area.
+APSL_INLINE lanes relative_change(apsl_triangle_geometry triangle, lanes rest_area) {
+    return select((lanes)(0.0f), fabs(triangle.area - rest_area) / rest_area, rest_area > 0.0f);
+}
+
+// Not finite where the diagonal, the rest area or the square of the area or of its change is not, or the rest area is
+// negative: a NaN or an infinity in any of them survives their sum.
+APSL_INLINE lanes area_witness(apsl_triangle_geometry triangle, lanes rest_area) {
+    const lanes change = relative_change(triangle, rest_area);
+    return select((lanes)(INFINITY), triangle.area * triangle.area + change * change + triangle.diagonal + rest_area,
+                  rest_area >= 0.0f);
+}
+
 APSL_INLINE void add_areas(apsl_area_sums* sums, apsl_triangle_geometry triangle, lanes rest_area) {
-    const lanes change = select((lanes)(0.0f), fabs(triangle.area - rest_area) / rest_area, rest_area > 0.0f);
+    const lanes change = relative_change(triangle, rest_area);
     sums->max_change = select(sums->max_change, change, change > sums->max_change);
-    sums->squared_change += change * change;
-    sums->measured += select((lanes)(0.0f), (lanes)(1.0f), rest_area > 0.0f);
-    // A NaN or an infinity in any of the three survives their sum.
-    const lanes witness = triangle.area + triangle.diagonal + rest_area;
-    sums->not_finite += select((lanes)(1.0f), (lanes)(0.0f), fabs(witness) < INFINITY);
+    const lanes weight = select((lanes)(0.0f), rest_area, rest_area > 0.0f);
+    sums->squared_change += weight * change * change;
+    sums->measured += weight;
+    sums->not_finite += select((lanes)(1.0f), (lanes)(0.0f), fabs(area_witness(triangle, rest_area)) < INFINITY);
 }
 
 APSL_INLINE void store_area_partials(apsl_area_sums sums, __global float* partials, __local float* scratch) {

@@ -5,6 +5,8 @@
 #include "cg_step.h"
 #include "first_guess.h"
 #include "layout.h"
+#include "never_worse.h"
+#include "offender.h"
 #include "patch_product.h"
 #include "regularization.h"
 #include "solve_in_one_group.h"
@@ -17,67 +19,94 @@ APSL_KERNEL void filter_in_one_group(
     __global apsl_stats* all_stats, __global const uint* vertex_order, __global const uint* triangle_order,
     __global const uint* triangles, __global const uint2* patches, __global const uint* patch_vertices,
     __global const ushort* local_triangles, __global const uint* corner_offsets, __global const uint* corners,
-    __global float4* predicted, __global apsl_gradients* gradients, __global float* residual,
-    __global float* damped_diagonal, __global float* product, __global float* direction,
-    __global float* direction_product, __global float* pressure, __global float* ordered_rest_areas,
-    __global float* ordered_regularization, __global const float* positions, ulong position_offset,
-    __global float* velocities, ulong velocity_offset, __global const float* inverse_masses, ulong inverse_mass_offset,
-    __global const float* rest_areas, ulong rest_area_offset, __global const float* regularization,
-    ulong regularization_offset, uint pressure_stride) {
+    __global float4* predicted, __global float4* motion, __global float4* correction,
+    __global apsl_gradients* gradients, __global float* residual, __global float* damped_diagonal,
+    __global float* product, __global float* direction, __global float* direction_product, __global float* pressure,
+    __global float* ordered_rest_areas, __global float* ordered_regularization, __global const float* positions,
+    ulong position_offset, __global float* velocities, ulong velocity_offset, __global const float* inverse_masses,
+    ulong inverse_mass_offset, __global const float* rest_areas, ulong rest_area_offset,
+    __global const float* regularization, ulong regularization_offset, uint pressure_stride) {
     APSL_SCRATCH;
     __local float4 forces[APSL_PATCH_VERTICES];
     const uint c = (uint)get_group_id(1);
-    apsl_stats stats = {0, 0, 0.0f, 0.0f, 0.0f, APSL_STATUS_OK};
-    float factor = states[c].adaptive_factor;
+    __global apsl_stats* stats = all_stats + c;
+    int sub_steps = 0, iterations = 0;
+    float worst_residual = 0.0f, factor = states[c].adaptive_factor;
+    bool broken = false, converged = true, started = false;
 
-    predict_vertices(cloths[c], parameters[c].time_step, vertex_order, predicted, positions + position_offset,
-                     velocities + velocity_offset, inverse_masses + inverse_mass_offset);
+    const float bad_vertices = group_sum(
+        predict_vertices(cloths[c], parameters[c].time_step, vertex_order, predicted, positions + position_offset,
+                         velocities + velocity_offset, inverse_masses + inverse_mass_offset),
+        scratch);
     order_values(cloths[c], triangle_order, ordered_rest_areas, ordered_regularization, rest_areas + rest_area_offset,
                  regularization + regularization_offset);
+    float2 change = (float2)(0.0f);
     for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
         const apsl_assembly_sums sums = assemble_triangles(
             cloths[c], true, parameters[c].regularization,
-            scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - stats.sub_steps), factor,
-            triangles, predicted, gradients, residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
+            scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_steps), factor, triangles,
+            predicted, gradients, residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
         const float squared_change = group_sum(sum_of_lanes(sums.areas.squared_change), scratch);
         const float measured = group_sum(sum_of_lanes(sums.areas.measured), scratch);
         const float not_finite = group_sum(sum_of_lanes(sums.areas.not_finite), scratch);
         apsl_solve solve = begin_solve_in_group(group_sum(sum_of_lanes(sums.squares), scratch),
                                                 group_sum(sum_of_lanes(sums.scaled_squares), scratch));
-        stats.max_area_change = group_max(max_of_lanes(sums.areas.max_change), scratch);
-        stats.rms_area_change = measured > 0.0f ? sqrt(squared_change / measured) : 0.0f;
-        if (not_finite > 0.0f || !isfinite(solve.initial_residual)) stats.status = APSL_STATUS_DIVERGED;
-
-        going_on = stats.status != APSL_STATUS_DIVERGED && stats.sub_steps < parameters[c].sub_steps &&
-                   stats.max_area_change > parameters[c].target_area_change;
-        if (going_on) {
-            group_memory_barrier();
+        change.x = group_max(max_of_lanes(sums.areas.max_change), scratch);
+        change.y = measured > 0.0f ? sqrt(squared_change / measured) : 0.0f;
+        broken = not_finite > 0.0f || !isfinite(solve.initial_residual);
+        const bool on_the_way = started && sub_steps < parameters[c].walked;
+        going_on = !broken && sub_steps < parameters[c].sub_steps &&
+                   (on_the_way || change.x > parameters[c].target_area_change);
+        if (!started && get_local_id(0) == 0) {
+            stats->initial_max_area_change = change.x;
+            stats->initial_rms_area_change = change.y;
+        }
+        // On a walk the first round only looks at its end; the second assembles where it begins.
+        const bool starting = !started && going_on && parameters[c].walked > 0;
+        started = true;
+        group_memory_barrier();
+        start_walking(cloths[c], starting, parameters[c].time_step, parameters[c].walked, vertex_order, predicted,
+                      motion, correction, positions + position_offset, velocities + velocity_offset);
+        if (going_on && !starting) {
             if (APSL_KEPT_PRESSURES > 0) {
-                copy_pressures(cloths[c], pressure, pressure + kept_place(stats.sub_steps, pressure_stride));
-                stats.cg_iterations += 1;  // the product with a guess costs as much
+                copy_pressures(cloths[c], pressure, pressure + kept_place(sub_steps, pressure_stride));
+                iterations += 1;  // the product with a guess costs as much
                 group_memory_barrier();
             }
             iterate_in_group(&solve, APSL_KEPT_PRESSURES > 0, parameters + c, cloths + c, patches, patch_vertices,
                              local_triangles, corner_offsets, corners, gradients, residual, damped_diagonal, product,
                              direction, direction_product, pressure, forces, scratch);
             if (APSL_KEPT_PRESSURES > 0)
-                copy_pressures(cloths[c], pressure + kept_place(stats.sub_steps, pressure_stride), pressure);
-            displace_vertices(cloths[c], APSL_KEPT_PRESSURES > 0 || solve.iterations > 0, corner_offsets, corners,
-                              gradients, pressure, predicted);
-            const bool converged = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
-            factor = adapted_factor(factor, parameters[c], solve.iterations, converged);
-            stats.sub_steps += 1;
-            stats.cg_iterations += solve.iterations;
+                copy_pressures(cloths[c], pressure + kept_place(sub_steps, pressure_stride), pressure);
+            const bool solved = APSL_KEPT_PRESSURES > 0 || solve.iterations > 0;
+            const bool walking = parameters[c].walked > 0;
+            displace_vertices(cloths[c], solved && !walking, corner_offsets, corners, gradients, pressure, predicted);
+            walk_vertices(cloths[c], walking, solved, sub_steps, parameters[c].walked, corner_offsets, corners,
+                          gradients, pressure, predicted, motion, correction);
+            const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
+            factor = adapted_factor(factor, parameters[c], solve.iterations, met);
+            converged = converged && met;
+            sub_steps += 1;
+            iterations += solve.iterations;
             if (solve.initial_residual > 0.0f)
-                stats.residual = fmax(stats.residual, sqrt(solve.residual / solve.initial_residual));
-            if (!converged) stats.status = APSL_STATUS_NOT_CONVERGED;
+                worst_residual = fmax(worst_residual, sqrt(solve.residual / solve.initial_residual));
         }
     }
-    correct_velocities(cloths[c], stats.status != APSL_STATUS_DIVERGED && stats.sub_steps > 0, parameters[c],
-                       vertex_order, predicted, positions + position_offset, velocities + velocity_offset);
+    broken = broken || bad_vertices > 0.0f;
     if (get_local_id(0) == 0) {
         states[c].adaptive_factor = factor;
-        all_stats[c] = stats;
+        stats->sub_steps = sub_steps;
+        stats->cg_iterations = iterations;
+        stats->residual = worst_residual;
+        stats->status = converged ? APSL_STATUS_OK : APSL_STATUS_NOT_CONVERGED;
+        const bool worse = is_worse(stats, change.x, change.y);
+        if (broken) stats->status = APSL_STATUS_DIVERGED;
+        states[c].discarded = broken || worse || sub_steps == 0;
     }
+    group_memory_barrier();
+    name_offender(stats, broken, bad_vertices > 0.0f, cloths[c], vertex_order, triangle_order, triangles, predicted,
+                  ordered_rest_areas, scratch);
+    correct_velocities(cloths[c], !states[c].discarded, parameters[c].time_step, parameters[c].walked > 0, vertex_order,
+                       predicted, correction, positions + position_offset, velocities + velocity_offset);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Eq. (6) with λ = p Δt²: x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, and how the solve ended. Reference:
-// apsl::reference::displacements. Moves 12 B corners, 2 B offsets, 24 B gradients, 4 B pressure, 16 B position read and
-// written, a triangle.
+// Eq. (6) with λ = p Δt²: x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, on to the next of small steps, and how the solve ended.
+// Reference: apsl::reference, displacements and strain_limiter. Moves 12 B corners, 2 B offsets, 24 B gradients, 4 B
+// pressure, 16 B position read and written, a triangle; in a walk 32 B more.
 #include "first_guess.h"
 #include "layout.h"
 #include "regularization.h"
@@ -12,14 +12,19 @@ APSL_KERNEL void gather_displacements(__global const apsl_cloth* cloths, __globa
                                       __global apsl_solve_state* states, __global apsl_stats* stats,
                                       __global float* partials, __global const uint* corner_offsets,
                                       __global const uint* corners, __global const apsl_gradients* gradients,
-                                      __global const float* pressure, __global float4* predicted, uint slot) {
+                                      __global const float* pressure, __global float4* predicted,
+                                      __global float4* motion, __global float4* correction, int sub_step, uint slot) {
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const float initial = states[c].initial_residual;
     // A right-hand side of zero does no iteration, and then, unless a guess was scaled by 0, no pressure is there to
     // read.
     const bool solved = APSL_KEPT_PRESSURES > 0 || states[c].solve_iterations > 0;
-    displace_vertices(cloths[c], !states[c].stopped && solved, corner_offsets, corners, gradients, pressure, predicted);
+    const bool walking = parameters[c].walked > 0;
+    displace_vertices(cloths[c], !walking && !states[c].stopped && solved, corner_offsets, corners, gradients, pressure,
+                      predicted);
+    walk_vertices(cloths[c], walking && !states[c].stopped, solved, sub_step, parameters[c].walked, corner_offsets,
+                  corners, gradients, pressure, predicted, motion, correction);
     const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     if (get_group_id(0) == 0 && get_local_id(0) == 0 && !states[c].stopped) {
         const bool converged = residual <= parameters[c].tolerance_squared * initial;

@@ -25,7 +25,8 @@ typedef struct {
     apsl_uint triangle_count;
     apsl_uint patch_begin;
     apsl_uint patch_count;
-    apsl_uint padding[2];
+    apsl_uint rest_area_begin;  // in the caller's arrays
+    apsl_uint padding;
 } apsl_cloth;
 
 // One cloth's apsl::Parameters for the current call.
@@ -38,10 +39,12 @@ typedef struct {
     apsl_int sub_steps;
     apsl_int max_iterations;
     apsl_int adaptive_iterations;  // 0: α stays as given
+    apsl_int walked;               // sub-steps that move on by a part of Δt; 0: all correct at its end
+    apsl_int padding[7];
 } apsl_parameters;
 
 // Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.
-#define APSL_PARAMETER_BLOCK 24
+#define APSL_PARAMETER_BLOCK 14
 typedef struct {
     apsl_parameters entry[APSL_PARAMETER_BLOCK];
 } apsl_parameter_block;
@@ -53,16 +56,29 @@ typedef struct {
     float residual;
     float max_area_change;
     float rms_area_change;
+    float initial_max_area_change;
+    float initial_rms_area_change;
     apsl_int status;
+    apsl_int offender;
+    apsl_uint offender_index;
 } apsl_stats;
 
 #define APSL_STATUS_OK 0
 #define APSL_STATUS_NOT_CONVERGED 1
-#define APSL_STATUS_DIVERGED 2
+#define APSL_STATUS_WORSENED 2
+#define APSL_STATUS_DIVERGED 3
+
+#define APSL_OFFENDER_NONE 0
+#define APSL_OFFENDER_VERTEX 1
+#define APSL_OFFENDER_TRIANGLE 2
+
+// A greatest area change up to which a cloth is at rest: 32-bit positions tell no better.
+#define APSL_AT_REST 1e-5f
 
 // Where a cloth's solve stands. Each field is written by one work-group in a launch that does not read it elsewhere.
 typedef struct {
     apsl_int stopped;           // no further sub-step in this call
+    apsl_int discarded;         // the call did nothing, or worse: velocities stay
     apsl_int iterating;         // this CG iteration does its work
     float initial_residual;     // ‖b‖², m⁴
     float scaled_residual[2];   // γ = r̄·r̄ with r̄ = r/√(α diag G), of even and of odd iterations
@@ -79,10 +95,11 @@ typedef struct {
 #define APSL_PARTIAL_CURVATURE 4  // r̄·Ar̄
 #define APSL_PARTIAL_MAX_CHANGE 5
 #define APSL_PARTIAL_SQUARED_CHANGE 6
-#define APSL_PARTIAL_MEASURED 7  // triangles with a rest area
+#define APSL_PARTIAL_MEASURED 7  // sum of rest areas, m²
 #define APSL_PARTIAL_NOT_FINITE 8
 #define APSL_PARTIAL_GUESS 9  // r̄·y₀
-#define APSL_PARTIAL_KINDS 10
+#define APSL_PARTIAL_BAD_VERTICES 10
+#define APSL_PARTIAL_KINDS 11
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSL_TRIANGLE_ALIGNMENT 16

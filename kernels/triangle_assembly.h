@@ -33,13 +33,16 @@ APSL_INLINE void order_values(apsl_cloth cloth, __global const uint* triangle_or
     const apsl_range range = share_of(cloth.triangle_count, true);
     for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
-        ordered_rest_areas[a] = rest_areas[triangle_order[a]];
+        float rest_area = rest_areas[triangle_order[a]];
 #if APSL_REGULARIZATION_PER_TRIANGLE
-        ordered_regularization[a] = fmax(regularization[triangle_order[a]], 1.0f);
+        const float alpha = regularization[triangle_order[a]];
+        ordered_regularization[a] = fmax(alpha, 1.0f);
+        if (!isfinite(alpha)) rest_area = NAN;  // one witness for both
 #else
         (void)ordered_regularization;
         (void)regularization;
 #endif
+        ordered_rest_areas[a] = rest_area;
     }
 }
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Algorithm 1, output: ṽ ← ṽ + (x − (x̃ + Δt ṽ)) / Δt. Only the corrections go in: with x the predicted position, the
 // line as printed would count Δt ṽ twice. Reference: apsl::reference, strain_limiter. Moves 20 B + 24 B read, 12 B
-// written a vertex (strides of 3).
+// written a vertex (strides of 3); after a walk 16 B more read.
 #include "layout.h"
 #include "vertex_motion.h"
 #include "work_group.h"
 
 APSL_KERNEL void update_velocities(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                                   __global const apsl_stats* stats, __global const uint* vertex_order,
-                                   __global const float4* predicted, __global const float* positions,
-                                   ulong position_offset, __global float* velocities, ulong velocity_offset) {
+                                   __global const apsl_solve_state* states, __global const uint* vertex_order,
+                                   __global const float4* predicted, __global const float4* correction,
+                                   __global const float* positions, ulong position_offset, __global float* velocities,
+                                   ulong velocity_offset) {
     const uint c = (uint)get_group_id(1);
-    correct_velocities(cloths[c], stats[c].status != APSL_STATUS_DIVERGED, parameters[c], vertex_order, predicted,
-                       positions + position_offset, velocities + velocity_offset);
+    correct_velocities(cloths[c], !states[c].discarded, parameters[c].time_step, parameters[c].walked > 0, vertex_order,
+                       predicted, correction, positions + position_offset, velocities + velocity_offset);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How vertices move: Algorithm 1, line 1 (predict), line 6 with Eq. (6) (displace) and its output (velocities).
-// Reference: apsl::reference, strain_limiter and displacements.
+// How vertices move: Algorithm 1, line 1 (predict), line 6 with Eq. (6) (displace) and its output (velocities); and
+// with small steps the way there. Reference: apsl::reference, strain_limiter and displacements.
 #ifndef APSL_VERTEX_MOTION_H
 #define APSL_VERTEX_MOTION_H
 
@@ -29,20 +29,52 @@ APSL_INLINE float3 load_velocity(__global const float* velocities, uint vertex) 
     return vload3(0, velocities + (ulong)vertex * APSL_VELOCITY_STRIDE);
 }
 
-// predicted = (x̃ + Δt ṽ, inverse mass), in the limiter's order of vertices.
-APSL_INLINE void predict_vertices(apsl_cloth cloth, float time_step, __global const uint* vertex_order,
-                                  __global float4* predicted, __global const float* positions,
-                                  __global const float* velocities, __global const float* inverse_masses) {
+// Of (x̃ + Δt ṽ, inverse mass). A position or velocity that is not finite leaves nothing finite.
+APSL_INLINE bool is_bad_vertex(float4 predicted) {
+    return !all(isfinite(predicted)) || predicted.w < 0.0f;
+}
+
+// predicted = (x̃ + Δt ṽ, inverse mass), in the limiter's order of vertices. Returns how many of this work-item's are
+// bad.
+APSL_INLINE float predict_vertices(apsl_cloth cloth, float time_step, __global const uint* vertex_order,
+                                   __global float4* predicted, __global const float* positions,
+                                   __global const float* velocities, __global const float* inverse_masses) {
     const apsl_range range = share_of(cloth.vertex_count, true);
+    float bad = 0.0f;
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint i = vertex_order[cloth.vertex_begin + v];
-        predicted[cloth.vertex_begin + v] =
+        const float4 x =
             (float4)(predicted_position(load_position(positions, i), load_velocity(velocities, i), time_step),
                      inverse_masses[i]);
+        predicted[cloth.vertex_begin + v] = x;
+        bad += is_bad_vertex(x) ? 1.0f : 0.0f;
+    }
+    return bad;
+}
+
+// The first of `walked` parts of the step: predicted = x̃ + Δt ṽ / walked, motion = Δt ṽ, correction = 0.
+APSL_INLINE void start_walking(apsl_cloth cloth, bool active, float time_step, int walked,
+                               __global const uint* vertex_order, __global float4* predicted, __global float4* motion,
+                               __global float4* correction, __global const float* positions,
+                               __global const float* velocities) {
+    const apsl_range range = share_of(cloth.vertex_count, active);
+    const float part = 1.0f / (float)walked;
+    for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
+        const uint place = cloth.vertex_begin + v, i = vertex_order[place];
+        const float3 step = time_step * load_velocity(velocities, i);
+        predicted[place].xyz = fma((float3)(part), step, load_position(positions, i));
+        motion[place] = (float4)(step, 0.0f);
+        correction[place] = (float4)(0.0f);
     }
 }
 
-// x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, in scaled terms √(2 w_i) Σ y_a ḡ_{a,i}.
+// Δx_i = −w_i Σ_{a∋i} λ_a g_{a,i}, in scaled terms −√(2 w_i) Σ y_a ḡ_{a,i}; w is zero.
+APSL_INLINE float4 displacement(float inverse_mass, __global const uint* corner_offsets, __global const uint* corners,
+                                __global const apsl_gradients* gradients, __global const float* pressure, uint i) {
+    return -sqrt(2.0f * inverse_mass) * sum_over_corners(corner_offsets, corners, gradients, pressure, i);
+}
+
+// x_i += Δx_i.
 APSL_INLINE void displace_vertices(apsl_cloth cloth, bool active, __global const uint* corner_offsets,
                                    __global const uint* corners, __global const apsl_gradients* gradients,
                                    __global const float* pressure, __global float4* predicted) {
@@ -50,25 +82,51 @@ APSL_INLINE void displace_vertices(apsl_cloth cloth, bool active, __global const
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint i = cloth.vertex_begin + v;
         const float4 x = predicted[i];
-        if (x.w > 0.0f)
-            predicted[i] = x - sqrt(2.0f * x.w) * sum_over_corners(corner_offsets, corners, gradients, pressure, i);
+        if (x.w > 0.0f) predicted[i] = x + displacement(x.w, corner_offsets, corners, gradients, pressure, i);
     }
 }
 
-// ṽ += (x − (x̃ + Δt ṽ)) / Δt.
-APSL_INLINE void correct_velocities(apsl_cloth cloth, bool active, apsl_parameters parameters,
+// Likewise in sub-step `sub_step` of a walk, and on to the next part. A displacement in the part before changes the
+// velocity by walked · Δx / Δt, and so carries on through the parts that are left: what it adds to the end of the step
+// is kept in `correction`, which stays exactly zero where nothing is corrected.
+APSL_INLINE void walk_vertices(apsl_cloth cloth, bool active, bool solved, int sub_step, int walked,
+                               __global const uint* corner_offsets, __global const uint* corners,
+                               __global const apsl_gradients* gradients, __global const float* pressure,
+                               __global float4* predicted, __global float4* motion, __global float4* correction) {
+    const apsl_range range = share_of(cloth.vertex_count, active);
+    const float parts = (float)walked;
+    const float parts_left = fmax((float)(walked - sub_step), 1.0f);
+    const float onward = sub_step + 1 < walked ? 1.0f / parts : 0.0f;
+    for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
+        const uint i = cloth.vertex_begin + v;
+        float4 x = predicted[i], step = motion[i];
+        if (solved && x.w > 0.0f) {
+            const float4 change = displacement(x.w, corner_offsets, corners, gradients, pressure, i);
+            x += change;
+            step += parts * change;
+            motion[i] = step;
+            correction[i] += parts_left * change;
+        }
+        predicted[i] = x + onward * step;
+    }
+}
+
+// ṽ += (x − (x̃ + Δt ṽ)) / Δt, or what a walk's corrections add up to.
+APSL_INLINE void correct_velocities(apsl_cloth cloth, bool active, float time_step, bool walking,
                                     __global const uint* vertex_order, __global const float4* predicted,
-                                    __global const float* positions, __global float* velocities) {
+                                    __global const float4* correction, __global const float* positions,
+                                    __global float* velocities) {
     const apsl_range range = share_of(cloth.vertex_count, active);
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
-        const uint i = vertex_order[cloth.vertex_begin + v];
-        const float4 x = predicted[cloth.vertex_begin + v];
+        const uint place = cloth.vertex_begin + v, i = vertex_order[place];
+        const float4 x = predicted[place];
         if (!(x.w > 0.0f)) continue;  // a pinned vertex keeps every bit of its velocity
         const float3 before = load_velocity(velocities, i);
         // A vertex nothing moved gets exactly zero.
-        const float3 correction = x.xyz - predicted_position(load_position(positions, i), before, parameters.time_step);
-        const float3 after = before + correction * (1.0f / parameters.time_step);
-        // No triangle vouches for a vertex that is in none, nor for a velocity that overflows.
+        const float3 moved = walking ? correction[place].xyz
+                                     : x.xyz - predicted_position(load_position(positions, i), before, time_step);
+        const float3 after = before + moved * (1.0f / time_step);
+        // No area vouches for a velocity that overflows.
         if (all(isfinite(after))) vstore3(after, 0, velocities + (ulong)i * APSL_VELOCITY_STRIDE);
     }
 }

@@ -35,6 +35,9 @@ void validate(const Parameters& p) {
             "0 (the same in every sub-step) or a finite number > 1");
     require(first == 0.0f || p.regularization > 1.0f, "regularization", p.regularization,
             "a number > 1 where first_regularization is given");
+    require(
+        p.stepping == Stepping::automatic || p.stepping == Stepping::whole_step || p.stepping == Stepping::small_steps,
+        "stepping", static_cast<std::int32_t>(p.stepping), "automatic (0), whole_step (1) or small_steps (2)");
 }
 
 }  // namespace apsl

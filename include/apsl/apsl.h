@@ -43,8 +43,23 @@ typedef enum apsl_execution {
 typedef enum apsl_limiter_status {
     APSL_LIMITER_OK = 0,
     APSL_LIMITER_NOT_CONVERGED = 1, /* a solve used all its iterations; the best state reached stands */
-    APSL_LIMITER_DIVERGED = 2       /* not finite, going in or on the way: velocities are as they were given */
+    APSL_LIMITER_WORSENED = 2,      /* area change rose; of start and end the state with less RMS stands */
+    APSL_LIMITER_DIVERGED = 3       /* not finite, going in or on the way: velocities are as they were given */
 } apsl_limiter_status;
+
+/* What apsl_limiter_stats.offender_index counts. */
+typedef enum apsl_limiter_offender {
+    APSL_OFFENDER_NONE = 0,
+    APSL_OFFENDER_VERTEX = 1,  /* position, velocity or inverse mass is not finite, or the mass is negative */
+    APSL_OFFENDER_TRIANGLE = 2 /* rest area is negative or, like alpha or the area it came to, not finite */
+} apsl_limiter_offender;
+
+/* From where the sub-steps of a call correct. */
+typedef enum apsl_stepping {
+    APSL_STEPPING_AUTOMATIC = 0,  /* small steps from 20 sub-steps up */
+    APSL_STEPPING_WHOLE_STEP = 1, /* from the end of the time step, as Algorithm 1 */
+    APSL_STEPPING_SMALL_STEPS = 2 /* each moves on by an equal part of the time step; the last only corrects */
+} apsl_stepping;
 
 typedef struct apsl_topology apsl_topology;
 typedef struct apsl_limiter apsl_limiter;
@@ -71,6 +86,7 @@ typedef struct apsl_limiter_parameters {
     int32_t max_iterations;      /* >= 1, of a solve */
     int32_t adaptive_iterations; /* 0: alpha stays as given; else more iterations than this raise it */
     float first_regularization;  /* 0: alpha is the same in every sub-step; else > 1, that of the first */
+    int32_t stepping;            /* apsl_stepping */
 } apsl_limiter_parameters;
 
 /* apsl::BufferView: 32-bit floats in a buffer of the caller's. */
@@ -92,10 +108,14 @@ typedef struct apsl_limiter_buffers {
 typedef struct apsl_limiter_stats {
     int32_t sub_steps;
     int32_t cg_iterations;
-    float residual;        /* greatest relative residual at the end of a solve */
-    float max_area_change; /* max |A - A0| / A0 after the last sub-step */
-    float rms_area_change;
-    int32_t status; /* apsl_limiter_status */
+    float residual;                /* greatest relative residual at the end of a solve */
+    float max_area_change;         /* max |A - A0| / A0 of what is left behind */
+    float rms_area_change;         /* weighted with A0 */
+    float initial_max_area_change; /* both at x + dt v */
+    float initial_rms_area_change;
+    int32_t status;          /* apsl_limiter_status */
+    int32_t offender;        /* apsl_limiter_offender; none unless status is diverged */
+    uint32_t offender_index; /* the first one, within its cloth */
 } apsl_limiter_stats;
 
 /* What went wrong in this thread's last failed call: one line, empty before the first. Valid until the next one. */

@@ -26,12 +26,25 @@ enum class Execution : std::int32_t {
     one_group = 2,    ///< one work-group takes one cloth through the whole call, in a single launch for all cloths
 };
 
+/// From where the sub-steps of a call correct.
+enum class Stepping : std::int32_t {
+    automatic = 0,   ///< small_steps from 20 sub-steps up, whole_step below
+    whole_step = 1,  ///< Algorithm 1 as printed: every sub-step starts from x̃ + Δt ṽ and what was corrected so far
+    /// All sub-steps but the last move on by an equal part of Δt, with velocities that hold the corrections so far, and
+    /// correct there; the last only corrects (Macklin et al. 2019, docs/formulation.md). Needs 2 sub-steps, and pays
+    /// where a vertex moves less than about half an edge in each. CG stops at three times `tolerance`: what one solve
+    /// leaves, the next takes up.
+    small_steps = 2,
+};
+
 /// What may change from one filter call to the next.
 struct Parameters {
     float time_step = 1.0f / 60.0f;  ///< s, > 0; Δt of Algorithm 1
-    float regularization = 1.2f;     ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
-    std::int32_t sub_steps = 10;     ///< ≥ 0; the fixed count of Algorithm 1
-    float target_area_change = 0.0f;   ///< |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it
+    float regularization = 1.05f;    ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
+    std::int32_t sub_steps = 30;     ///< ≥ 0; the fixed count of Algorithm 1
+    /// |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it. With small steps looked at before
+    /// the first and before the last.
+    float target_area_change = 0.0f;
     float tolerance = 0.1f;            ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, Euclidean norms of areas in m²
     std::int32_t max_iterations = 50;  ///< ≥ 1, CG iterations a solve
     /// 0: α stays as given. Otherwise a solve that fails or takes more iterations than this raises α for the next one
@@ -42,6 +55,7 @@ struct Parameters {
     /// last, α − 1 changes by the same factor from one sub-step to the next (docs/formulation.md). Needs
     /// regularization > 1; a per-triangle α is that of the last sub-step and is scaled alike.
     float first_regularization = 0.0f;
+    Stepping stepping = Stepping::automatic;
 };
 
 /// Throws Error(invalid_argument) naming the first field that is out of range or not finite.

@@ -9,18 +9,32 @@ namespace apsl {
 enum class Status : std::int32_t {
     ok = 0,
     not_converged = 1,  ///< at least one solve used all its iterations; the best state reached stands
-    diverged = 2,       ///< not finite, going in or on the way: positions and velocities are as they were given
+    /// The greatest or the RMS area change ended above what it was at x̃ + Δt ṽ. Of the two states the one with less RMS
+    /// stands: where that is the first, the velocities are as they were given.
+    worsened = 2,
+    diverged = 3,  ///< not finite, going in or on the way: positions and velocities are as they were given
+};
+
+/// What Stats::offender_index counts.
+enum class Offender : std::int32_t {
+    none = 0,
+    vertex = 1,    ///< its position, velocity or x̃ + Δt ṽ is not finite, or its inverse mass is not or is negative
+    triangle = 2,  ///< its rest area is negative or, like its α or the area it came to, not finite
 };
 
 /// What one filter call did to one cloth. The device writes this layout itself (kernels/layout.h).
 struct Stats {
-    std::int32_t sub_steps;      ///< solves done
-    std::int32_t cg_iterations;  ///< over all of them
-    float residual;              ///< greatest ‖r‖ / ‖b‖ at the end of a solve, norm as in Parameters::tolerance
-    float max_area_change;       ///< max |A − A⁰| / A⁰ after the last sub-step
-    float rms_area_change;       ///< root of the mean of its squares, over triangles with A⁰ > 0
+    std::int32_t sub_steps;         ///< solves done
+    std::int32_t cg_iterations;     ///< over all of them
+    float residual;                 ///< greatest ‖r‖ / ‖b‖ at the end of a solve, norm as in Parameters::tolerance
+    float max_area_change;          ///< max |A − A⁰| / A⁰ of what is left behind
+    float rms_area_change;          ///< root of the mean of its squares, weighted with A⁰, as mass is
+    float initial_max_area_change;  ///< both at x̃ + Δt ṽ
+    float initial_rms_area_change;
     Status status;
+    Offender offender;             ///< other than none only where status is diverged
+    std::uint32_t offender_index;  ///< the first one, within its cloth
 };
-static_assert(sizeof(Stats) == 24);
+static_assert(sizeof(Stats) == 40);
 
 }  // namespace apsl

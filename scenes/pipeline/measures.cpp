@@ -47,19 +47,19 @@ std::vector<double> predicted_area_changes(const ClothState& cloth, double time_
 
 AreaChange summarize(const ClothState& cloth, const std::vector<double>& changes) {
     AreaChange summary;
-    double sum_of_squares = 0.0;
-    std::size_t counted = 0;
+    double weighted_squares = 0.0;
+    double weights = 0.0;
     for (std::size_t triangle = 0; triangle < changes.size(); ++triangle) {
         if (cloth.rest_areas[triangle] > 0.0) {
             // Not std::max alone: a NaN must show and stay.
             if (changes[triangle] > summary.max || std::isnan(changes[triangle])) {
                 summary.max = changes[triangle];
             }
-            sum_of_squares += changes[triangle] * changes[triangle];
-            ++counted;
+            weighted_squares += cloth.rest_areas[triangle] * changes[triangle] * changes[triangle];
+            weights += cloth.rest_areas[triangle];
         }
     }
-    summary.rms = counted > 0 ? std::sqrt(sum_of_squares / static_cast<double>(counted)) : 0.0;
+    summary.rms = weights > 0.0 ? std::sqrt(weighted_squares / weights) : 0.0;
     return summary;
 }
 

@@ -189,6 +189,10 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
         static_cast<std::int32_t>(object.integer("adaptive_iterations", parameters.adaptive_iterations, 0, kMaxCount));
     parameters.first_regularization = static_cast<float>(
         object.number("first_regularization", parameters.first_regularization, Range::at_least(0.0)));
+    parameters.stepping = object.choice("stepping", parameters.stepping,
+                                        {{"automatic", Stepping::automatic},
+                                         {"whole_step", Stepping::whole_step},
+                                         {"small_steps", Stepping::small_steps}});
     settings.kept_pressures = static_cast<std::uint32_t>(object.integer("kept_pressures", 0, 0, kMaxKeptPressures));
     object.refuse_other_keys();
     try {

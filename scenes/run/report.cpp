@@ -82,6 +82,8 @@ std::string status_name(Status status) {
             return "ok";
         case Status::not_converged:
             return "not_converged";
+        case Status::worsened:
+            return "worsened";
         case Status::diverged:
             return "diverged";
     }

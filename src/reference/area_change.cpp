@@ -10,16 +10,20 @@ namespace apsl::reference {
 template <class Real>
 AreaChange area_change(std::span<const TriangleGeometry<Real>> geometry, std::span<const Real> rest_areas) {
     double max = 0.0;
-    double sum_of_squares = 0.0;
+    double weighted_squares = 0.0;
+    double weights = 0.0;
     bool finite = true;
-    constexpr double greatest = std::numeric_limits<float>::max();  // Stats are 32-bit
+    constexpr double greatest = std::numeric_limits<float>::max();  // Stats are 32-bit, and so is what they are made of
     for (std::size_t a = 0; a < geometry.size(); ++a) {
+        const auto rest_area = static_cast<double>(rest_areas[a]);
+        if (rest_area == 0.0) continue;
         const double change = static_cast<double>(std::abs(geometry[a].area - rest_areas[a]) / rest_areas[a]);
-        finite = finite && change <= greatest;  // false for NaN too
+        finite = finite && change * change <= greatest;  // false for NaN too
         max = std::max(max, change);
-        sum_of_squares += change * change;
+        weighted_squares += rest_area * change * change;
+        weights += rest_area;
     }
-    return {max, std::sqrt(sum_of_squares / static_cast<double>(geometry.size())), finite};
+    return {max, weights > 0.0 ? std::sqrt(weighted_squares / weights) : 0.0, finite};
 }
 
 template AreaChange area_change(std::span<const TriangleGeometry<double>>, std::span<const double>);

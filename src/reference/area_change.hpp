@@ -10,11 +10,11 @@ namespace apsl::reference {
 /// |A − A⁰| / A⁰ over the triangles of a cloth.
 struct AreaChange {
     double max;
-    double rms;   ///< root of the mean of the squares
+    double rms;   ///< root of the mean of the squares, weighted with A⁰
     bool finite;  ///< every triangle's is; where not, max and rms mean nothing
 };
 
-/// geometry [T]; rest_areas in m², > 0, [T].
+/// geometry [T]; rest_areas in m², [T]; triangles without one have no say.
 template <class Real>
 AreaChange area_change(std::span<const TriangleGeometry<Real>> geometry, std::span<const Real> rest_areas);
 

@@ -57,7 +57,7 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
     SolveResult<Real> result{0, norm(r) / norm_b, false};
     if (result.relative_residual <= tolerance) return {0, result.relative_residual, true};
     Real pDp = rz;
-    while (result.iterations < max_iterations) {
+    while (result.iterations < max_iterations && rz > Real(0)) {  // 0 where squares of what is left underflow
         q.noalias() = A * p;
         const Real pq = p.dot(q);
         if (!std::isfinite(pq)) return {result.iterations, not_a_number, false};

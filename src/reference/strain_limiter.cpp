@@ -11,6 +11,8 @@
 #include "reference/matrix.hpp"
 #include "reference/scheduled_regularization.hpp"
 
+#include "stepping.hpp"
+
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
 
@@ -31,8 +33,8 @@ void check(const Topology& topology, const Buffers<Real>& buffers) {
         check_size("regularization", buffers.regularization.size(), topology.triangle_count());
     check_values("inverse_masses", "vertex", buffers.inverse_masses, "a finite number >= 0 (1/kg)",
                  [](Real w) { return w >= Real(0); });
-    check_values("rest_areas", "triangle", buffers.rest_areas, "a finite number > 0 (m2)",
-                 [](Real area) { return area > Real(0); });
+    check_values("rest_areas", "triangle", buffers.rest_areas, "a finite number >= 0 (m2; 0 is not limited)",
+                 [](Real area) { return area >= Real(0); });
     check_values("regularization", "triangle", buffers.regularization, "a finite number >= 1",
                  [](Real alpha) { return alpha >= Real(1); });
 }
@@ -40,6 +42,14 @@ void check(const Topology& topology, const Buffers<Real>& buffers) {
 template <class Real>
 bool all_finite(std::span<const Real> numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](Real number) { return std::isfinite(number); });
+}
+
+/// The first vertex with a number that is not finite, or the count of vertices.
+template <class Real>
+std::size_t first_bad_vertex(std::span<const Real> coordinates) {
+    std::size_t n = 0;
+    while (n < coordinates.size() && std::isfinite(coordinates[n])) ++n;
+    return n / 3;
 }
 
 template <class Range>
@@ -58,6 +68,8 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     std::vector<Real> predicted;  // x̃ + Δt ṽ
     std::vector<Real> moved;      // x_j, corrected sub-step by sub-step
+    std::vector<Real> motion;     // Δt times the velocity, on a walk with the corrections so far
+    std::vector<Real> total;      // what the corrections so far add to the end of the step
     std::vector<Real> correction;
     std::vector<TriangleGeometry<Real>> geometry;
     TriangleVector<Real> area_excess;  // b = A − A⁰
@@ -73,6 +85,25 @@ struct BasicStrainLimiter<Real>::Implementation {
         for (std::size_t n = 0; n < predicted.size(); ++n)
             predicted[n] = buffers.positions[n] + time_step * buffers.velocities[n];
         moved = predicted;
+        total.assign(predicted.size(), Real(0));
+    }
+
+    /// Geometry at x_j. A triangle without a rest area gets no gradients: nothing moves for it.
+    AreaChange measure(const Buffers<Real>& buffers) {
+        triangle_geometries<Real>(*topology, moved, geometry);
+        for (std::size_t a = 0; a < geometry.size(); ++a)
+            if (buffers.rest_areas[a] == Real(0))
+                for (Vector3<Real>& gradient : geometry[a].gradients) gradient.setZero();
+        return area_change<Real>(geometry, buffers.rest_areas);
+    }
+
+    /// The first of `parts` parts of the step.
+    void start_walk(const Buffers<Real>& buffers, Real time_step, int parts) {
+        motion.resize(moved.size());
+        for (std::size_t n = 0; n < moved.size(); ++n) {
+            motion[n] = time_step * buffers.velocities[n];
+            moved[n] = buffers.positions[n] + motion[n] / static_cast<Real>(parts);
+        }
     }
 
     /// One solve of (G + (α − 1) diag G) λ = b at the present geometry; λ is left in `lambda`.
@@ -92,8 +123,9 @@ struct BasicStrainLimiter<Real>::Implementation {
         regularize(std::span<const Real>(effective_regularization), G);
 
         area_excess.resize(static_cast<Eigen::Index>(geometry.size()));
-        for (std::size_t a = 0; a < geometry.size(); ++a) area_excess[a] = geometry[a].area - buffers.rest_areas[a];
-        const auto tolerance = static_cast<Real>(parameters.tolerance);
+        for (std::size_t a = 0; a < geometry.size(); ++a)
+            area_excess[a] = buffers.rest_areas[a] == Real(0) ? Real(0) : geometry[a].area - buffers.rest_areas[a];
+        const auto tolerance = static_cast<Real>(solve_tolerance(parameters));
         if (kept.empty())
             return conjugate_gradient(G, area_excess, tolerance, parameters.max_iterations, scratch, lambda);
 
@@ -106,56 +138,106 @@ struct BasicStrainLimiter<Real>::Implementation {
         return result;
     }
 
-    void displace(std::span<const Real> inverse_masses) {
+    /// Corrects x_j. On a walk of `parts` parts a displacement of sub-step k changes the velocity too, by parts · Δx /
+    /// Δt, and carries on through the parts left.
+    void displace(std::span<const Real> inverse_masses, int sub_step, int parts) {
         displacements<Real>(*topology, geometry, inverse_masses, {lambda.data(), geometry.size()}, correction);
-        for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += correction[n];
+        const auto carried = static_cast<Real>(std::max(parts - sub_step, 1));
+        for (std::size_t n = 0; n < moved.size(); ++n) {
+            moved[n] += correction[n];
+            total[n] += carried * correction[n];
+        }
+        if (sub_step + 1 >= parts) return;
+        for (std::size_t n = 0; n < moved.size(); ++n) {
+            motion[n] += static_cast<Real>(parts) * correction[n];
+            moved[n] += motion[n] / static_cast<Real>(parts);
+        }
     }
 
-    /// ṽ + (x_j − (x̃ + Δt ṽ)) / Δt into `correction`; false where a number is not finite. Velocities of pinned vertices
-    /// are copied, not computed, so that they keep every bit.
+    /// ṽ + Σ Δx / Δt into `correction`; false where a number is not finite. Velocities of pinned vertices are copied,
+    /// not computed, so that they keep every bit.
     bool filtered_velocities(const Buffers<Real>& buffers, Real time_step) {
         correction.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) {
             correction[n] = buffers.velocities[n];
-            if (buffers.inverse_masses[n / 3] > Real(0)) correction[n] += (moved[n] - predicted[n]) / time_step;
+            if (buffers.inverse_masses[n / 3] > Real(0) && total[n] != Real(0)) correction[n] += total[n] / time_step;
         }
         return all_finite<Real>(correction);
+    }
+
+    void name_offender(Offender offender, std::size_t index) {
+        stats.offender = offender;
+        stats.offender_index = static_cast<std::uint32_t>(index);
+    }
+
+    /// The first triangle whose area is not finite or has no place in 32-bit statistics.
+    void name_triangle(const Buffers<Real>& buffers) {
+        for (std::size_t a = 0; a < geometry.size(); ++a)
+            if (!area_change<Real>(std::span(geometry).subspan(a, 1), buffers.rest_areas.subspan(a, 1)).finite)
+                return name_offender(Offender::triangle, a);
+    }
+
+    /// False where what the call did is to be dropped: greatest and RMS area change are then those at x̃ + Δt ṽ. Between
+    /// a greater maximum and a greater RMS, the RMS decides: it is what the solves reduce.
+    bool better(const AreaChange& initial, const AreaChange& change) {
+        const bool rose = change.max > initial.max || change.rms > initial.rms;
+        const bool worse = rose && change.rms >= initial.rms;
+        set_area_change(worse ? initial : change);
+        constexpr double at_rest = 1e-5;  // 32-bit positions tell no better
+        if (rose && initial.max > at_rest) stats.status = Status::worsened;
+        return !worse;
+    }
+
+    void set_area_change(const AreaChange& change) {
+        stats.max_area_change = static_cast<float>(change.max);
+        stats.rms_area_change = static_cast<float>(change.rms);
     }
 
     /// Leaves the outcome in `stats`; what is not finite ends it as diverged, with the last finite area change.
     void filter(const Buffers<Real>& buffers, const Parameters& parameters) {
         const Real time_step = parameters.time_step;
+        const int parts = walked_sub_steps(parameters);
         stats = {};
         stats.status = Status::diverged;
-        if (!all_finite(buffers.positions) || !all_finite<Real>(buffers.velocities)) return;
-
-        bool all_converged = true;
         predict(buffers, time_step);
+        if (!all_finite<Real>(predicted)) return name_offender(Offender::vertex, first_bad_vertex<Real>(predicted));
+        const AreaChange initial = measure(buffers);
+        if (!initial.finite) return name_triangle(buffers);
+        set_area_change(initial);
+        stats.initial_max_area_change = stats.max_area_change;
+        stats.initial_rms_area_change = stats.rms_area_change;
+
+        AreaChange change = initial;
+        bool all_converged = true;
+        const auto target = static_cast<double>(parameters.target_area_change);
+        if (parts > 0 && initial.max > target) {
+            start_walk(buffers, time_step, parts);
+            change = measure(buffers);
+        }
         for (;;) {
-            triangle_geometries<Real>(*topology, moved, geometry);
-            const AreaChange change = area_change<Real>(geometry, buffers.rest_areas);
-            if (!change.finite) return;
-            stats.max_area_change = static_cast<float>(change.max);
-            stats.rms_area_change = static_cast<float>(change.rms);
+            if (!change.finite) return name_triangle(buffers);
+            set_area_change(change);
             if (stats.sub_steps == parameters.sub_steps) break;
-            if (change.max <= static_cast<double>(parameters.target_area_change)) break;
+            // On the way the areas are not those of the end of the step.
+            const bool at_the_end = stats.sub_steps >= parts || initial.max <= target;
+            if (at_the_end && change.max <= target) break;
 
             const SolveResult<Real> result = solve(buffers, parameters);
             if (!std::isfinite(result.relative_residual)) return;
-            displace(buffers.inverse_masses);
+            displace(buffers.inverse_masses, stats.sub_steps, parts);
             ++stats.sub_steps;
             stats.cg_iterations +=
                 result.iterations + (kept.empty() ? 0 : 1);  // the product with a guess costs as much
             stats.residual = std::max(stats.residual, static_cast<float>(result.relative_residual));
             all_converged = all_converged && result.converged;
             adaptive_factor = adapted_factor(adaptive_factor, parameters, result.iterations, result.converged);
+            change = measure(buffers);
         }
         // Without a sub-step there is nothing to add, not even a zero: −0 + 0 would lose its sign.
-        if (stats.sub_steps > 0) {
-            if (!filtered_velocities(buffers, time_step)) return;
-            std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
-        }
+        const bool any = stats.sub_steps > 0;
+        if (any && !filtered_velocities(buffers, time_step)) return;
         stats.status = all_converged ? Status::ok : Status::not_converged;
+        if (better(initial, change) && any) std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
     }
 };
 
@@ -190,10 +272,11 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
     const auto entries = static_cast<std::size_t>(i.G.nonZeros());
     const auto rows = static_cast<std::size_t>(i.G.rows());
     return entries * (sizeof(Real) + sizeof(int)) + (rows + 1) * sizeof(int) + bytes(i.shared) + bytes(i.predicted) +
-           bytes(i.moved) + bytes(i.correction) + bytes(i.geometry) + bytes(i.area_excess) + bytes(i.lambda) +
-           bytes(i.effective_regularization) + i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) +
-           bytes(i.scratch.inverse_diagonal) + bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) +
-           bytes(i.scratch.direction) + bytes(i.scratch.product);
+           bytes(i.moved) + bytes(i.motion) + bytes(i.total) + bytes(i.correction) + bytes(i.geometry) +
+           bytes(i.area_excess) + bytes(i.lambda) + bytes(i.effective_regularization) +
+           i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) + bytes(i.scratch.inverse_diagonal) +
+           bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) +
+           bytes(i.scratch.product);
 }
 
 template <class Real>

@@ -71,7 +71,7 @@ TEST_CASE("a free cloth keeps its momentum", "[filter]") {
         MovingCloth cloth = alternating(17);
         for (double& inverse_mass : cloth.inverse_masses)
             if (inverse_mass == 0.0) inverse_mass = 250.0;
-        const Filtered filtered = filter_on_device(cloth, options, Parameters{.sub_steps = 4});
+        const Filtered filtered = filter_on_device(cloth, options, Parameters{.regularization = 2.0f, .sub_steps = 4});
         double before[3] = {}, after[3] = {}, moved = 0.0, mass_speed = 0.0;
         for (std::size_t n = 0; n < cloth.velocities.size(); ++n) {
             const double mass = 1.0 / cloth.inverse_masses[n / 3];
@@ -94,7 +94,7 @@ TEST_CASE("pinned vertices keep every bit of their velocities", "[filter]") {
             cloth.inverse_masses[pin] = 0.0;
             cloth.velocities[3 * pin] = -0.0;
         }
-        const Filtered filtered = filter_on_device(cloth, options, Parameters{});
+        const Filtered filtered = filter_on_device(cloth, options, Parameters{.regularization = 2.0f, .sub_steps = 4});
         REQUIRE(filtered.velocities != cloth.velocities);
         for (const std::size_t pin : pins)
             for (std::size_t k = 0; k < 3; ++k) {
@@ -107,15 +107,20 @@ TEST_CASE("pinned vertices keep every bit of their velocities", "[filter]") {
 TEST_CASE("the target area change ends a call early, and is then met", "[filter]") {
     const MovingCloth cloth = alternating(17);
     for (const Options& options : {variants[0], many_groups, one_group}) {
-        const Filtered all = filter_on_device(cloth, options, {.sub_steps = 30});
-        const Filtered some = filter_on_device(cloth, options, {.sub_steps = 30, .target_area_change = 0.08f});
-        const Filtered none = filter_on_device(cloth, options, {.sub_steps = 30, .target_area_change = 10.0f});
+        Parameters parameters{.regularization = 1.2f, .sub_steps = 30, .stepping = Stepping::whole_step};
+        const Filtered all = filter_on_device(cloth, options, parameters);
+        parameters.target_area_change = 0.08f;
+        const Filtered some = filter_on_device(cloth, options, parameters);
+        parameters.target_area_change = 10.0f;
+        const Filtered none = filter_on_device(cloth, options, parameters);
+        parameters.target_area_change = 0.0f;
         CHECK(all.stats.sub_steps == 30);
         CHECK(some.stats.sub_steps > 0);
         CHECK(some.stats.sub_steps < 30);
         CHECK(some.stats.max_area_change <= 0.08f);
         // One sub-step fewer was not enough.
-        const Filtered fewer = filter_on_device(cloth, options, {.sub_steps = some.stats.sub_steps - 1});
+        parameters.sub_steps = some.stats.sub_steps - 1;
+        const Filtered fewer = filter_on_device(cloth, options, parameters);
         CHECK(fewer.stats.max_area_change > 0.08f);
         CHECK(none.stats.sub_steps == 0);
         CHECK(none.velocities == cloth.velocities);
@@ -135,8 +140,8 @@ TEST_CASE("no sub-steps: the areas are measured, nothing is moved", "[filter]") 
 TEST_CASE("too few iterations are a status, and the best state reached stands", "[filter]") {
     const MovingCloth cloth = alternating(17);
     for (const Options& options : variants) {
-        const Filtered filtered =
-            filter_on_device(cloth, options, {.sub_steps = 2, .tolerance = 1e-3f, .max_iterations = 1});
+        const Filtered filtered = filter_on_device(
+            cloth, options, {.regularization = 2.0f, .sub_steps = 2, .tolerance = 1e-3f, .max_iterations = 1});
         CHECK(filtered.stats.status == Status::not_converged);
         CHECK(filtered.stats.sub_steps == 2);
         CHECK(filtered.stats.cg_iterations == 2);

@@ -58,6 +58,7 @@ std::vector<apsl_solve_state> fresh_states(std::span<const ScaledSolve> solves) 
     for (const ScaledSolve& solve : solves) {
         apsl_solve_state state = poison<apsl_solve_state>(1)[0];
         state.stopped = 0;
+        state.discarded = 0;
         state.iterating = 1;
         state.initial_residual = static_cast<float>(squared_norm(solve, solve.right_hand_side));
         state.solve_iterations = 0;
@@ -158,6 +159,8 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       patch_vertices(adjacency.patch_vertices),
       local_triangles(adjacency.local_triangles),
       predicted(predicted_of(source_cloths, vertex_places)),
+      motion(poison<cl_float4>(adjacency.vertex_count)),
+      correction(poison<cl_float4>(adjacency.vertex_count)),
       gradients(gradients_of(source_cloths, solves, adjacency, triangle_places, p.regularization, alpha_per_triangle)),
       residual(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].right_hand_side[a]; })),
       damped_diagonal(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].damped_diagonal[a]; })),

@@ -26,6 +26,9 @@ struct Gradients {
 };
 static_assert(sizeof(Gradients) == 32);
 
+/// The paper's: α = 1.2, ten sub-steps, all from the end of the step.
+inline constexpr Parameters paper_setting{.regularization = 1.2f, .sub_steps = 10};
+
 /// Every array of a limiter in guarded device memory, for one or more cloths: inputs as the reference has them, outputs
 /// poisoned. A test overwrites what it wants otherwise.
 struct Arrays {
@@ -52,7 +55,8 @@ struct Arrays {
     DeviceArray<cl_uint2> patches;
     DeviceArray<std::uint32_t> patch_vertices;
     DeviceArray<std::uint16_t> local_triangles;
-    DeviceArray<cl_float4> predicted;  ///< positions and inverse masses
+    DeviceArray<cl_float4> predicted;           ///< positions and inverse masses
+    DeviceArray<cl_float4> motion, correction;  ///< of a walk
     DeviceArray<Gradients> gradients;
     DeviceArray<float> residual;  ///< the scaled right-hand side
     DeviceArray<float> damped_diagonal;

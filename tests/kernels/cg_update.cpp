@@ -41,7 +41,7 @@ TEST_CASE("cg_update: two iterations by hand, awkward sizes in every work-group 
             CAPTURE(group, size);
             const Build build{.work_group_size = group};
             const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(strip(5), 2)};
-            Arrays arrays(cloths, Matrix::consistent, {}, 3);
+            Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
             std::vector<std::vector<double>> r(2), p(2), s(2), y(2);
             std::vector<double> gamma(2), previous_gamma(2), previous_step(2);
             for (std::size_t c = 0; c < 2; ++c) r[c] = arrays.of_cloth(arrays.residual.read(), c);
@@ -131,7 +131,7 @@ TEST_CASE("cg_update with csr_spmv_dot: as good a solution as the reference's, i
 
 TEST_CASE("cg_update: a solve that has ended writes nothing and hands its residual on", "[cg_update]") {
     const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
-    Arrays arrays(cloths, Matrix::consistent, {}, 3);
+    Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
     arrays.product.write(arrays.residual.read());
     arrays.write_partials(0, APSL_PARTIAL_RESIDUAL_EVEN, {1.0, 2.0, 3.0});
     arrays.write_partials(0, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, {4.0, 5.0, 6.0});
@@ -154,7 +154,7 @@ TEST_CASE("cg_update: no positive curvature, no step, then or later in the solve
     for (const double curvature : {0.0, -1.0, 1e-30}) {
         CAPTURE(curvature);
         const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
-        Arrays arrays(cloths, Matrix::consistent, {}, 3);
+        Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
         const std::vector<float> residual = arrays.residual.read();
         arrays.product.write(std::vector<float>(residual.size(), 0.0f));
         arrays.write_partial_sum(0, APSL_PARTIAL_RESIDUAL_EVEN, 2.0);

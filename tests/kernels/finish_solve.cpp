@@ -10,7 +10,7 @@ using namespace apsl::test;
 
 namespace {
 
-constexpr Parameters long_solve{.regularization = 1.05f, .tolerance = 1e-4f, .max_iterations = 60};
+constexpr Parameters long_solve{.regularization = 1.05f, .sub_steps = 10, .tolerance = 1e-4f, .max_iterations = 60};
 
 void iterate(Arrays& arrays, const Build& build, int from, int to) {
     for (int k = from; k < to; ++k) {
@@ -91,7 +91,7 @@ TEST_CASE("finish_solve: two iterations are the two that cg_update would have do
     for (const std::uint32_t group : work_group_sizes()) {
         CAPTURE(group);
         const Build build{.work_group_size = group};
-        const Parameters six{.regularization = 1.05f, .tolerance = 0.0f, .max_iterations = 6};
+        const Parameters six{.regularization = 1.05f, .sub_steps = 10, .tolerance = 0.0f, .max_iterations = 6};
         const std::vector<Cloth> cloths{make_cloth(grid(17, 15, 1.0, 1.0, Diagonals::alternating), 1)};
         Arrays finished(cloths, Matrix::consistent, six, 3), queued_on(cloths, Matrix::consistent, six, 3);
         iterate(finished, build, 0, 4);
@@ -140,7 +140,7 @@ TEST_CASE("finish_solve: takes up no solve that has stopped, converged, broken d
         check_same(before_stopped, read(stopped));
 
         // Converged before the last queued iteration.
-        Arrays converged(cloths, Matrix::consistent, {.tolerance = 0.1f}, 3);
+        Arrays converged(cloths, Matrix::consistent, {.regularization = 1.2f, .sub_steps = 10, .tolerance = 0.1f}, 3);
         iterate(converged, build, 0, 20);
         REQUIRE(converged.states.read()[0].solve_iterations < 20);
         const Everything before_converged = read(converged);
@@ -161,7 +161,8 @@ TEST_CASE("finish_solve: takes up no solve that has stopped, converged, broken d
         // one, their sum and all else stay.
         for (const bool out_of_iterations : {false, true}) {
             CAPTURE(out_of_iterations);
-            Arrays ended(cloths, Matrix::consistent, {.tolerance = 0.0f, .max_iterations = 2}, 3);
+            Arrays ended(cloths, Matrix::consistent,
+                         {.regularization = 1.2f, .sub_steps = 10, .tolerance = 0.0f, .max_iterations = 2}, 3);
             iterate(ended, build, 0, 2);
             REQUIRE(ended.states.read()[0].solve_iterations == 2);
             if (!out_of_iterations) {

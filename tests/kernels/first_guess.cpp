@@ -37,7 +37,7 @@ TEST_CASE("first_guess: scaled to the solution's size, awkward sizes in every wo
             CAPTURE(group, size);
             const Build build{.work_group_size = group};
             const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(strip(5), 2)};
-            Arrays arrays(cloths, Matrix::consistent, {}, 3);
+            Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
             std::vector<std::vector<double>> r;
             for (std::size_t c = 0; c < 2; ++c) r.push_back(arrays.of_cloth(arrays.residual.read(), c));
             write_guess(arrays, r);
@@ -80,7 +80,7 @@ TEST_CASE("first_guess: one that is no use is dropped, and a stopped cloth's is 
     for (const auto& [guess, curvature] :
          {std::pair{nan, 1.0}, std::pair{1.0, 0.0}, std::pair{1.0, -1.0}, std::pair{1.0, nan}, std::pair{0.0, 0.0}}) {
         CAPTURE(guess, curvature);
-        Arrays arrays(cloths, Matrix::consistent, {}, 2);
+        Arrays arrays(cloths, Matrix::consistent, paper_setting, 2);
         arrays.pressure.write(arrays.over_triangles([value = guess](std::size_t, std::size_t) { return value; }));
         arrays.product.write(arrays.over_triangles([](std::size_t, std::size_t) { return nan; }));
         const std::vector<float> before = arrays.residual.read();
@@ -93,7 +93,7 @@ TEST_CASE("first_guess: one that is no use is dropped, and a stopped cloth's is 
         CHECK(std::abs(std::sqrt(partial_sum(arrays, 0, APSL_PARTIAL_SCALED_RESIDUAL_EVEN)) - expected) <=
               sum_tolerance(2, 50) * expected);
     }
-    Arrays arrays(cloths, Matrix::consistent, {}, 2);
+    Arrays arrays(cloths, Matrix::consistent, paper_setting, 2);
     write_guess(arrays, {arrays.of_cloth(arrays.residual.read(), 0)});
     arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
     arrays.write_partial_sum(0, APSL_PARTIAL_CURVATURE, 1.0);

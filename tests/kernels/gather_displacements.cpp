@@ -65,7 +65,7 @@ TEST_CASE("gather_displacements: awkward sizes in every work-group size", "[gath
         for (const std::uint32_t size : awkward_sizes(group)) {
             CAPTURE(group, size);
             const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(strip(5), 2)};
-            Arrays arrays(cloths, Matrix::consistent, {}, 3);
+            Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
             check_displaced(arrays, {.work_group_size = group});
         }
 }
@@ -74,7 +74,7 @@ TEST_CASE("gather_displacements: every kind of mesh, the same bytes twice", "[ga
     const std::vector<Cloth> cloths{make_cloth(grid(9, 11, 1.0, 1.0, Diagonals::alternating), 1),
                                     make_cloth(tetrahedron(), 3), make_cloth(book(4), 4), make_cloth(fan(30), 5),
                                     make_cloth(right_triangle(), 6)};
-    Arrays arrays(cloths, Matrix::consistent, {}, 2);
+    Arrays arrays(cloths, Matrix::consistent, paper_setting, 2);
     const std::vector<cl_float4> before = arrays.predicted.read();
     check_displaced(arrays, {});
     const std::vector<cl_float4> first = arrays.predicted.read();
@@ -85,7 +85,7 @@ TEST_CASE("gather_displacements: every kind of mesh, the same bytes twice", "[ga
 
 TEST_CASE("gather_displacements: moves nothing once stopped or without a pressure", "[gather_displacements]") {
     const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
-    Arrays arrays(cloths, Matrix::consistent, {}, 2);
+    Arrays arrays(cloths, Matrix::consistent, paper_setting, 2);
     const std::vector<cl_float4> before = arrays.predicted.read();
     with_pressure(arrays);
     arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
@@ -102,7 +102,7 @@ TEST_CASE("gather_displacements: moves nothing once stopped or without a pressur
 TEST_CASE("gather_displacements: keeps the greatest residual and says where the tolerance was missed",
           "[gather_displacements]") {
     const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
-    Arrays arrays(cloths, Matrix::consistent, {.tolerance = 0.1f}, 3);
+    Arrays arrays(cloths, Matrix::consistent, {.regularization = 1.2f, .sub_steps = 10, .tolerance = 0.1f}, 3);
     with_pressure(arrays);
     arrays.edit_states([](apsl_solve_state& state) { state.initial_residual = 100.0f; });
     const auto end_with = [&](const std::vector<double>& residual_squared) {
@@ -123,7 +123,8 @@ TEST_CASE("gather_displacements: keeps the greatest residual and says where the 
 
 TEST_CASE("gather_displacements: counts iterations and adapts alpha's factor", "[gather_displacements]") {
     const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
-    Arrays arrays(cloths, Matrix::consistent, {.tolerance = 0.1f, .adaptive_iterations = 10}, 2);
+    Arrays arrays(cloths, Matrix::consistent,
+                  {.regularization = 1.2f, .sub_steps = 10, .tolerance = 0.1f, .adaptive_iterations = 10}, 2);
     with_pressure(arrays);
     const auto factor_after = [&](float factor, int iterations, double relative_residual) {
         arrays.edit_states([&](apsl_solve_state& state) {
@@ -147,4 +148,42 @@ TEST_CASE("gather_displacements: counts iterations and adapts alpha's factor", "
     arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
     CHECK(factor_after(4.0f, 11, 0.05) == 4.0f);
     CHECK(arrays.stats.read()[0].cg_iterations == 47);
+}
+
+TEST_CASE("gather_displacements: on a walk a displacement changes the velocity and carries on",
+          "[gather_displacements]") {
+    // Four parts; sub-step 1 leaves two of them after its own, sub-step 3 none, sub-step 4 only corrects.
+    constexpr Parameters walk{.regularization = 1.2f, .sub_steps = 5, .stepping = Stepping::small_steps};
+    const std::vector<Cloth> cloths{make_cloth(strip(300), 1)};
+    for (const std::uint32_t group : work_group_sizes()) {
+        Arrays whole(cloths, Matrix::consistent, paper_setting, 3);
+        with_pressure(whole);
+        const std::vector<cl_float4> before = whole.predicted.read();
+        launch::gather_displacements(whole, {.work_group_size = group}, 0);
+        const std::vector<cl_float4> moved = whole.predicted.read();
+        for (const auto& [sub_step, carried, onward] :
+             {std::tuple{1, 3.0, 0.25}, std::tuple{3, 1.0, 0.0}, std::tuple{4, 1.0, 0.0}}) {
+            CAPTURE(group, sub_step);
+            Arrays arrays(cloths, Matrix::consistent, walk, 3);
+            with_pressure(arrays);
+            const std::vector<cl_float4> zeros(before.size(), cl_float4{{0.0f, 0.0f, 0.0f, 0.0f}});
+            const std::vector<cl_float4> steps(before.size(), cl_float4{{0.5f, -0.25f, 1.0f, 0.0f}});
+            arrays.correction.write(zeros);
+            arrays.motion.write(steps);
+            launch::gather_displacements(arrays, {.work_group_size = group}, 0, sub_step);
+            const std::vector<cl_float4> after = arrays.predicted.read(), correction = arrays.correction.read();
+            std::vector<double> errors, sizes;
+            for (std::size_t i = 0; i < before.size(); ++i)
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const double change = static_cast<double>(moved[i].s[k]) - static_cast<double>(before[i].s[k]);
+                    const double step = static_cast<double>(steps[i].s[k]) + 4.0 * change;
+                    errors.push_back(static_cast<double>(correction[i].s[k]) - carried * change);
+                    errors.push_back(static_cast<double>(after[i].s[k]) -
+                                     (static_cast<double>(before[i].s[k]) + change + onward * step));
+                    sizes.push_back(std::abs(static_cast<double>(before[i].s[k])) + 1.0);
+                    if (before[i].s[3] == 0.0f) CHECK(correction[i].s[k] == 0.0f);
+                }
+            CHECK(norm(errors) <= elementwise_tolerance(12) * norm(sizes));
+        }
+    }
 }

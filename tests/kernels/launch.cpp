@@ -73,9 +73,9 @@ void set_parameters(Arrays& a, const Build& build, const apsl_parameter_block& b
 
 void predict_positions(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "predict_positions.cl", "predict_positions");
-    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.predicted, a.caller_positions,
-                  cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset},
-                  a.inverse_masses, cl_ulong{a.array_offset});
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.predicted,
+                  a.caller_positions, cl_ulong{a.position_placement.offset}, a.caller_velocities,
+                  cl_ulong{a.velocity_placement.offset}, a.inverse_masses, cl_ulong{a.array_offset});
     run(k, a.groups, build, a.cloth_count());
 }
 
@@ -100,6 +100,20 @@ void measure_area_change(Arrays& a, const Build& build) {
     run(k, a.groups, build, a.cloth_count());
 }
 
+void begin_call(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "solve_control.cl", "begin_call");
+    set_arguments(k, 0, a.parameters, a.states, a.stats, a.partials, cl_uint{a.groups});
+    run(k, 1, build, a.cloth_count());
+}
+
+void start_walk(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "start_walk.cl", "start_walk");
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.vertex_order, a.predicted, a.motion, a.correction,
+                  a.caller_positions, cl_ulong{a.position_placement.offset}, a.caller_velocities,
+                  cl_ulong{a.velocity_placement.offset});
+    run(k, a.groups, build, a.cloth_count());
+}
+
 void begin_solve(Arrays& a, const Build& build, int sub_step) {
     const host::Kernel& k = kernel(a, build, "solve_control.cl", "begin_solve");
     set_arguments(k, 0, a.parameters, a.states, a.stats, a.partials, cl_uint{a.groups}, cl_int{sub_step});
@@ -108,7 +122,8 @@ void begin_solve(Arrays& a, const Build& build, int sub_step) {
 
 void end_call(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "solve_control.cl", "end_call");
-    set_arguments(k, 0, a.stats, a.partials, cl_uint{a.groups});
+    set_arguments(k, 0, a.cloths, a.states, a.stats, a.partials, a.vertex_order, a.triangle_order, a.triangles,
+                  a.predicted, a.ordered_rest_areas, cl_uint{a.groups});
     run(k, 1, build, a.cloth_count());
 }
 
@@ -167,16 +182,16 @@ void finish_solve(Arrays& a, const Build& build, int iterations) {
     run(k, 1, build, a.cloth_count());
 }
 
-void gather_displacements(Arrays& a, const Build& build, std::uint32_t slot) {
+void gather_displacements(Arrays& a, const Build& build, std::uint32_t slot, int sub_step) {
     const host::Kernel& k = kernel(a, build, "gather_displacements.cl", "gather_displacements");
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.partials, a.corner_offsets, a.corners, a.gradients,
-                  a.pressure, a.predicted, cl_uint{slot});
+                  a.pressure, a.predicted, a.motion, a.correction, cl_int{sub_step}, cl_uint{slot});
     run(k, a.groups, build, a.cloth_count());
 }
 
 void update_velocities(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "update_velocities.cl", "update_velocities");
-    set_arguments(k, 0, a.cloths, a.parameters, a.stats, a.vertex_order, a.predicted, a.caller_positions,
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.vertex_order, a.predicted, a.correction, a.caller_positions,
                   cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset});
     run(k, a.groups, build, a.cloth_count());
 }
@@ -184,9 +199,9 @@ void update_velocities(Arrays& a, const Build& build) {
 void filter_in_one_group(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "filter_in_one_group.cl", "filter_in_one_group");
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.triangle_order, a.triangles,
-                  a.patches, a.patch_vertices, a.local_triangles, a.corner_offsets, a.corners, a.predicted, a.gradients,
-                  a.residual, a.damped_diagonal, a.product, a.direction, a.direction_product, a.pressure,
-                  a.ordered_rest_areas, a.ordered_regularization, a.caller_positions,
+                  a.patches, a.patch_vertices, a.local_triangles, a.corner_offsets, a.corners, a.predicted, a.motion,
+                  a.correction, a.gradients, a.residual, a.damped_diagonal, a.product, a.direction, a.direction_product,
+                  a.pressure, a.ordered_rest_areas, a.ordered_regularization, a.caller_positions,
                   cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset},
                   a.inverse_masses, cl_ulong{a.array_offset}, a.rest_areas, cl_ulong{a.array_offset},
                   build.alpha_per_triangle ? a.regularization : a.rest_areas, cl_ulong{a.array_offset},

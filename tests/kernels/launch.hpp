@@ -31,6 +31,8 @@ void predict_positions(Arrays& arrays, const Build& build);
 void order_triangle_values(Arrays& arrays, const Build& build);
 void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
 void measure_area_change(Arrays& arrays, const Build& build);
+void begin_call(Arrays& arrays, const Build& build);
+void start_walk(Arrays& arrays, const Build& build);
 void begin_solve(Arrays& arrays, const Build& build, int sub_step);
 void end_call(Arrays& arrays, const Build& build);
 void assemble_pressure_csr(Arrays& arrays, const Build& build);
@@ -41,7 +43,7 @@ void start_from_guess(Arrays& arrays, const Build& build);
 void cg_update(Arrays& arrays, const Build& build, int iteration);
 /// `iterations`: those done before.
 void finish_solve(Arrays& arrays, const Build& build, int iterations);
-void gather_displacements(Arrays& arrays, const Build& build, std::uint32_t slot);
+void gather_displacements(Arrays& arrays, const Build& build, std::uint32_t slot, int sub_step = 0);
 void update_velocities(Arrays& arrays, const Build& build);
 void filter_in_one_group(Arrays& arrays, const Build& build);
 

@@ -31,7 +31,7 @@ TEST_CASE("order_triangle_values: awkward sizes in every work-group size, with a
             for (const bool per_triangle : {false, true}) {
                 CAPTURE(group, size, per_triangle);
                 const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(tetrahedron(), 2)};
-                Arrays arrays(cloths, Matrix::printed, {}, 3, per_triangle, {3, size % 2});
+                Arrays arrays(cloths, Matrix::printed, paper_setting, 3, per_triangle, {3, size % 2});
                 check_ordered(arrays, {.work_group_size = group, .alpha_per_triangle = per_triangle});
             }
 }
@@ -39,7 +39,7 @@ TEST_CASE("order_triangle_values: awkward sizes in every work-group size, with a
 TEST_CASE("order_triangle_values: alpha below 1 and NaN become 1", "[order_triangle_values]") {
     std::vector<Cloth> cloths{make_cloth(strip(5), 1)};
     cloths[0].regularization = {0.5, std::nan(""), -1.0, 1.0, 3.0};
-    Arrays arrays(cloths, Matrix::printed, {}, 1, false);
+    Arrays arrays(cloths, Matrix::printed, paper_setting, 1, false);
     launch::order_triangle_values(arrays, {.alpha_per_triangle = true});
     const std::vector<double> ordered = arrays.of_cloth(arrays.ordered_regularization.read(), 0);
     CHECK(ordered == std::vector<double>{1.0, 1.0, 1.0, 1.0, 3.0});

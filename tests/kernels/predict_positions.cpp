@@ -50,7 +50,7 @@ TEST_CASE("predict_positions: awkward sizes in every work-group size", "[predict
         for (const std::uint32_t size : awkward_sizes(group)) {
             CAPTURE(group, size);
             const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(strip(7), 2)};
-            Arrays arrays(cloths, Matrix::printed, {}, 3);
+            Arrays arrays(cloths, Matrix::printed, paper_setting, 3);
             check_predicted(arrays, {.work_group_size = group});
         }
 }
@@ -60,7 +60,7 @@ TEST_CASE("predict_positions: strides and offsets of the caller's buffers", "[pr
     for (const auto& [positions, velocities] :
          {std::pair<Placement, Placement>{{4, 0}, {4, 0}}, {{5, 7}, {3, 2}}, {{3, 1}, {5, 33}}}) {
         CAPTURE(positions.stride, positions.offset, velocities.stride, velocities.offset);
-        Arrays arrays(cloths, Matrix::printed, {}, 2, false, positions, velocities);
+        Arrays arrays(cloths, Matrix::printed, paper_setting, 2, false, positions, velocities);
         check_predicted(arrays, {});
     }
 }

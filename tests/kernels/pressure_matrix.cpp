@@ -104,7 +104,7 @@ TEST_CASE("csr_spmv_dot: awkward sizes in every work-group size", "[csr_spmv_dot
         for (const std::uint32_t size : awkward_sizes(group)) {
             CAPTURE(group, size);
             const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(strip(5), 2)};
-            Arrays arrays(cloths, Matrix::consistent, {}, 3);
+            Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
             check_product(arrays, {.work_group_size = group}, true);
         }
 }

@@ -60,7 +60,7 @@ TEST_CASE("update_velocities: awkward sizes in every work-group size", "[update_
         for (const std::uint32_t size : awkward_sizes(group)) {
             CAPTURE(group, size);
             const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(strip(7), 2)};
-            Arrays arrays(cloths, Matrix::printed, {}, 3);
+            Arrays arrays(cloths, Matrix::printed, paper_setting, 3);
             move_predicted(arrays, 5);
             check_velocities(arrays, {.work_group_size = group});
         }
@@ -71,7 +71,7 @@ TEST_CASE("update_velocities: strides and offsets of the caller's buffers", "[up
     for (const auto& [positions, velocities] :
          {std::pair<Placement, Placement>{{4, 0}, {4, 0}}, {{5, 7}, {3, 2}}, {{3, 1}, {5, 33}}}) {
         CAPTURE(positions.stride, positions.offset, velocities.stride, velocities.offset);
-        Arrays arrays(cloths, Matrix::printed, {}, 2, false, positions, velocities);
+        Arrays arrays(cloths, Matrix::printed, paper_setting, 2, false, positions, velocities);
         move_predicted(arrays, 6);
         check_velocities(arrays, {});
     }
@@ -81,7 +81,7 @@ TEST_CASE("update_velocities: a pinned vertex keeps every bit of its velocity", 
     std::vector<Cloth> cloths{make_cloth(strip(20), 3)};
     cloths[0].inverse_masses.assign(22, 0.0);
     for (std::size_t n = 0; n < cloths[0].velocities.size(); n += 2) cloths[0].velocities[n] = -0.0;
-    Arrays arrays(cloths, Matrix::printed, {}, 2);
+    Arrays arrays(cloths, Matrix::printed, paper_setting, 2);
     move_predicted(arrays, 6);
     const std::vector<float> before = arrays.caller_velocities.read();
     REQUIRE(std::signbit(before[0]));
@@ -89,19 +89,34 @@ TEST_CASE("update_velocities: a pinned vertex keeps every bit of its velocity", 
     CHECK(same_bytes(before, arrays.caller_velocities.read()));
 }
 
-TEST_CASE("update_velocities: what no solve moved keeps its velocity, and a diverged call all of them",
+TEST_CASE("update_velocities: what no solve moved keeps its velocity, and a discarded call all of them",
           "[update_velocities]") {
     const std::vector<Cloth> cloths{make_cloth(strip(300), 3)};
-    Arrays arrays(cloths, Matrix::printed, {}, 2);
+    Arrays arrays(cloths, Matrix::printed, paper_setting, 2);
     const std::vector<float> before = arrays.caller_velocities.read();
     launch::predict_positions(arrays, {});
     launch::update_velocities(arrays, {});
     CHECK(same_bytes(before, arrays.caller_velocities.read()));
 
     move_predicted(arrays, 7);
-    std::vector<apsl_stats> stats = arrays.stats.read();
-    stats[0].status = APSL_STATUS_DIVERGED;
-    arrays.stats.write(stats);
+    arrays.edit_states([](apsl_solve_state& state) { state.discarded = 1; });
     launch::update_velocities(arrays, {});
     CHECK(same_bytes(before, arrays.caller_velocities.read()));
+}
+
+TEST_CASE("update_velocities: after a walk what its corrections add up to, and nothing else", "[update_velocities]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(300), 3)};
+    Arrays arrays(cloths, Matrix::printed, {.sub_steps = 4, .stepping = Stepping::small_steps}, 2, false, {4, 3},
+                  {5, 2});
+    std::vector<cl_float4> correction(arrays.correction.size(), cl_float4{{0.0f, 0.0f, 0.0f, 0.0f}});
+    const std::uint32_t place = arrays.vertex_places[18];
+    correction[place] = {{0.5f, -0.25f, 0.125f, 0.0f}};
+    arrays.correction.write(correction);
+    move_predicted(arrays, 7);  // where a walk ended does not matter
+    std::vector<float> expected = arrays.caller_velocities.read();
+    REQUIRE(cloths[0].inverse_masses[18] > 0.0);
+    const float time_step = arrays.parameters.read()[0].time_step;
+    for (std::size_t k = 0; k < 3; ++k) expected[2 + 5 * 18 + k] += correction[place].s[k] * (1.0f / time_step);
+    launch::update_velocities(arrays, {});
+    CHECK(same_bytes(expected, arrays.caller_velocities.read()));
 }

@@ -68,19 +68,19 @@ TEST_CASE("alpha rises until solves fit their iterations, and later solves conve
     Parameters fixed = hard;
     fixed.adaptive_iterations = 0;
     Calls adaptive, plain;
-    CHECK(plain.call(fixed).status == Status::not_converged);
+    CHECK(plain.call(fixed).status != Status::ok);
     std::vector<Status> statuses;
     std::vector<float> residuals;
     for (int call = 0; call < 12; ++call) {
         const Stats stats = adaptive.call(hard);
         statuses.push_back(stats.status);
         residuals.push_back(stats.residual);
-        CHECK(plain.call(fixed).status == Status::not_converged);
+        CHECK(plain.call(fixed).status != Status::ok);  // not_converged, and where it overshot worsened
     }
-    CHECK(statuses.front() == Status::not_converged);
+    CHECK(statuses.front() != Status::ok);
     CHECK(statuses.back() == Status::ok);
     // While it fails, every rise of α makes the same system easier.
-    for (std::size_t n = 1; n < statuses.size() && statuses[n - 1] == Status::not_converged; ++n)
+    for (std::size_t n = 1; n < statuses.size() && statuses[n - 1] != Status::ok; ++n)
         CHECK(residuals[n] < residuals[n - 1]);
 }
 

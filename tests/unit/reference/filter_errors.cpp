@@ -78,9 +78,9 @@ TEST_CASE("numbers out of range are refused by name and place") {
         call.inverse_masses[3] = not_a_number;
         CHECK(call.message() == "inverse_masses of vertex 3 is nan, expected a finite number >= 0 (1/kg)");
     }
-    SECTION("rest area zero") {
-        call.rest_areas[1] = 0;
-        CHECK(call.message() == "rest_areas of triangle 1 is 0, expected a finite number > 0 (m2)");
+    SECTION("rest area negative") {
+        call.rest_areas[1] = -1;
+        CHECK(call.message() == "rest_areas of triangle 1 is -1, expected a finite number >= 0 (m2; 0 is not limited)");
     }
     SECTION("alpha below one on a triangle") {
         call.regularization = {1.2, 0.9};

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/launch.hpp"
+#include "support/tolerances.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+constexpr Parameters walk{.sub_steps = 5, .stepping = Stepping::small_steps};  // four parts
+
+}  // namespace
+
+TEST_CASE("start_walk: a part of the step, awkward sizes in every work-group size", "[start_walk]") {
+    for (const std::uint32_t group : work_group_sizes())
+        for (const std::uint32_t size : awkward_sizes(group)) {
+            CAPTURE(group, size);
+            const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(strip(7), 2)};
+            Arrays arrays(cloths, Matrix::printed, walk, 3, false, {4, 3}, {5, 2});
+            launch::start_walk(arrays, {.work_group_size = group});
+            const std::vector<cl_float4> predicted = arrays.predicted.read(), motion = arrays.motion.read(),
+                                         correction = arrays.correction.read();
+            std::vector<double> errors, sizes;
+            std::size_t i = 0, wrong = 0;
+            for (const Cloth& cloth : cloths)
+                for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v, ++i) {
+                    const std::uint32_t place = arrays.vertex_places[i];
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        const double step = walk.time_step * cloth.velocities[3 * v + k];
+                        errors.push_back(static_cast<double>(predicted[place].s[k]) -
+                                         (cloth.positions[3 * v + k] + step / 4.0));
+                        errors.push_back(static_cast<double>(motion[place].s[k]) - step);
+                        sizes.push_back(std::abs(cloth.positions[3 * v + k]) + std::abs(step));
+                        wrong += correction[place].s[k] != 0.0f;
+                    }
+                    wrong += predicted[place].s[3] != static_cast<float>(cloth.inverse_masses[v]);
+                    wrong += motion[place].s[3] != 0.0f;
+                }
+            CHECK(norm(errors) <= elementwise_tolerance(3) * norm(sizes));
+            CHECK(wrong == 0);
+        }
+}
+
+TEST_CASE("start_walk: nothing where the step is whole or the call has stopped", "[start_walk]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
+    for (const bool stopped : {false, true}) {
+        Arrays arrays(cloths, Matrix::printed, stopped ? walk : paper_setting, 2);
+        arrays.edit_states([&](apsl_solve_state& state) { state.stopped = stopped; });
+        const std::vector<cl_float4> before = arrays.predicted.read();
+        launch::start_walk(arrays, {});
+        CHECK(same_bytes(before, arrays.predicted.read()));
+    }
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "stepping.hpp"
+#include "unit/reference/run_filter.hpp"
+#include "unit/reference/sample_cloths.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace apsl;
+using namespace apsl::reference;
+
+namespace {
+
+// A triangle with two pinned vertices and a third that moves along its altitude: one dimension, solvable by hand.
+// Height h, base 1, rest height 1; the solve moves it by −(h − 1) / α exactly.
+struct Altitude {
+    std::shared_ptr<const Topology> topology = Topology::build(std::vector<Triangle>{{0, 1, 2}}, 3);
+    std::vector<double> positions{0, 0, 0, 1, 0, 0, 0.5, 1, 0};
+    std::vector<double> inverse_masses{0, 0, 2};
+    std::vector<double> rest_areas{0.5};
+
+    std::pair<double, Stats> speed_after(double speed, const Parameters& parameters) const {
+        std::vector<double> velocities{0, 0, 0, 0, 0, 0, 0, speed, 0};
+        StrainLimiter limiter(topology, Matrix::consistent);
+        limiter.enqueue({positions, velocities, inverse_masses, rest_areas, {}}, parameters);
+        return {velocities[7], limiter.read_stats()};
+    }
+};
+
+constexpr float alpha = 2.0f;
+Parameters walk(int sub_steps) {
+    return {.time_step = 0.5f,
+            .regularization = alpha,
+            .sub_steps = sub_steps,
+            .tolerance = 1e-6f,
+            .stepping = Stepping::small_steps};
+}
+
+}  // namespace
+
+TEST_CASE("small steps from 20 sub-steps up, and never with fewer than two") {
+    const auto walked = [](int sub_steps, Stepping stepping) {
+        return walked_sub_steps({.sub_steps = sub_steps, .stepping = stepping});
+    };
+    CHECK(walked(19, Stepping::automatic) == 0);
+    CHECK(walked(20, Stepping::automatic) == 19);
+    CHECK(walked(50, Stepping::whole_step) == 0);
+    CHECK(walked(2, Stepping::small_steps) == 1);
+    CHECK(walked(1, Stepping::small_steps) == 0);
+    CHECK(solve_tolerance({.tolerance = 0.1f, .stepping = Stepping::whole_step}) == 0.1f);
+    CHECK(solve_tolerance({.tolerance = 0.1f}) == Approx(0.3f));
+    CHECK(solve_tolerance({.tolerance = 0.9f}) == Approx(0.9f));
+}
+
+TEST_CASE("small steps: a walk along an altitude, by hand") {
+    // Three sub-steps, so two parts. Δt v = 0.4: at h = 1.2 the first solve takes 0.1 off, the velocity loses 2 × 0.1,
+    // the second part adds (0.4 − 0.2) / 2 = 0.1: h = 1.2, again 0.1 off: 1.1. The last takes 0.05 off: h = 1.05.
+    const Altitude triangle;
+    const auto [speed, stats] = triangle.speed_after(0.8, walk(3));
+    CHECK(stats.sub_steps == 3);
+    CHECK(stats.initial_max_area_change == Approx(0.4f));
+    CHECK(stats.max_area_change == Approx(0.05f));
+    CHECK(speed == Approx(0.05 / 0.5));
+}
+
+TEST_CASE("small steps: the target is looked at before the walk and before its last sub-step") {
+    const Altitude triangle;
+    Parameters parameters = walk(3);
+    parameters.target_area_change = 0.4001f;
+    CHECK(triangle.speed_after(0.8, parameters).second.sub_steps == 0);
+    CHECK(triangle.speed_after(0.8, parameters).first == 0.8);
+    parameters.target_area_change = 0.15f;  // met in the end by 0.1, and not on the way
+    CHECK(triangle.speed_after(0.8, parameters).second.sub_steps == 2);
+    parameters.target_area_change = 0.09f;
+    CHECK(triangle.speed_after(0.8, parameters).second.sub_steps == 3);
+}
