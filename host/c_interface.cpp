@@ -74,6 +74,10 @@ apsl::Options options_from(const apsl_limiter_options& o) {
             .work_group_size = o.work_group_size,
             .position_stride = o.position_stride,
             .velocity_stride = o.velocity_stride,
+            .position_component_stride = o.position_component_stride,
+            .velocity_component_stride = o.velocity_component_stride,
+            .inverse_mass_stride = o.inverse_mass_stride,
+            .positions_only = o.positions_only != 0,
             .regularization_per_triangle = o.regularization_per_triangle != 0,
             .kept_pressures = o.kept_pressures};
 }
@@ -108,6 +112,10 @@ apsl_limiter_options apsl_limiter_default_options(void) {
             o.work_group_size,
             o.position_stride,
             o.velocity_stride,
+            o.position_component_stride,
+            o.velocity_component_stride,
+            o.inverse_mass_stride,
+            o.positions_only,
             o.regularization_per_triangle,
             o.kept_pressures};
 }

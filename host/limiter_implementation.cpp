@@ -47,6 +47,11 @@ void check_view(const BufferView& view, std::size_t floats, const char* name) {
                 std::to_string(needed) + " from offset " + std::to_string(view.offset) + " on");
 }
 
+/// Floats from the first number of the first vertex to the last of the last.
+std::size_t vector_extent(std::size_t vertices, std::uint32_t stride, std::uint32_t component_stride) {
+    return (vertices - 1) * stride + std::size_t{2} * component_stride + 1;
+}
+
 void check_topologies(std::span<const std::shared_ptr<const Topology>> cloths) {
     if (cloths.empty()) invalid("no cloths given, expected at least one");
     for (const auto& topology : cloths)
@@ -119,8 +124,9 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     ordered_rest_areas = zeroed_buffer(triangle_count);
     ordered_regularization = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
     predicted = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
-    motion = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
-    correction = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
+    const std::size_t walking_vertices = options.positions_only ? 1 : vertex_count;
+    motion = buffer(walking_vertices * sizeof(cl_float4));
+    correction = buffer(walking_vertices * sizeof(cl_float4));
     gradients = buffer(triangle_count * gradient_bytes);
     residual = zeroed_buffer(triangle_count);
     damped_diagonal = zeroed_buffer(triangle_count);
@@ -152,8 +158,10 @@ void StrainLimiter::Implementation::create_kernels() {
     set_arguments(predict_positions, 0, cloths, parameters, states, stats, partials, vertex_order, predicted);
     begin_call = kernel("begin_call");
     set_arguments(begin_call, 0, parameters, states, stats, partials, groups);
-    start_walk = kernel("start_walk");
-    set_arguments(start_walk, 0, cloths, parameters, states, vertex_order, predicted, motion, correction);
+    if (!options.positions_only) {
+        start_walk = kernel("start_walk");
+        set_arguments(start_walk, 0, cloths, parameters, states, vertex_order, predicted, motion, correction);
+    }
     order_triangle_values = kernel("order_triangle_values");
     set_arguments(order_triangle_values, 0, cloths, triangle_order, ordered_rest_areas, ordered_regularization);
     assemble_gradients = kernel("assemble_gradients");
@@ -210,9 +218,16 @@ void StrainLimiter::Implementation::create_apply_kernels() {
 }
 
 void StrainLimiter::Implementation::check_buffers(const Buffers& buffers) const {
-    check_view(buffers.positions, std::size_t{vertex_count - 1} * options.position_stride + 3, "positions");
-    check_view(buffers.velocities, std::size_t{vertex_count - 1} * options.velocity_stride + 3, "velocities");
-    check_view(buffers.inverse_masses, vertex_count, "inverse_masses");
+    check_view(buffers.positions,
+               vector_extent(vertex_count, options.position_stride, options.position_component_stride), "positions");
+    if (!options.positions_only)
+        check_view(buffers.velocities,
+                   vector_extent(vertex_count, options.velocity_stride, options.velocity_component_stride),
+                   "velocities");
+    else if (buffers.velocities.buffer)
+        invalid("buffers.velocities is given, but Options::positions_only is on");
+    check_view(buffers.inverse_masses, std::size_t{vertex_count - 1} * options.inverse_mass_stride + 1,
+               "inverse_masses");
     check_view(buffers.rest_areas, rest_area_count, "rest_areas");
     if (options.regularization_per_triangle)
         check_view(buffers.regularization, rest_area_count, "regularization");
@@ -226,37 +241,46 @@ void StrainLimiter::Implementation::bind(const Buffers& buffers) const {
     };
     // A kernel needs some buffer there even where it reads none.
     const BufferView& regularization = buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
+    const BufferView& corrected = options.positions_only ? buffers.positions : buffers.velocities;
     if (one_group()) {
         set(filter_in_one_group, 24, buffers.positions);
-        set(filter_in_one_group, 26, buffers.velocities);
+        set(filter_in_one_group, 26, corrected);
         set(filter_in_one_group, 28, buffers.inverse_masses);
         set(filter_in_one_group, 30, buffers.rest_areas);
         set(filter_in_one_group, 32, regularization);
         return;
     }
     set(predict_positions, 7, buffers.positions);
-    set(predict_positions, 9, buffers.velocities);
+    set(predict_positions, 9, corrected);
     set(predict_positions, 11, buffers.inverse_masses);
-    set(start_walk, 7, buffers.positions);
-    set(start_walk, 9, buffers.velocities);
+    if (start_walk.handle) {
+        set(start_walk, 7, buffers.positions);
+        set(start_walk, 9, buffers.velocities);
+    }
     set(order_triangle_values, 4, buffers.rest_areas);
     set(order_triangle_values, 6, regularization);
     set(update_velocities, 6, buffers.positions);
-    set(update_velocities, 8, buffers.velocities);
+    set(update_velocities, 8, corrected);
+}
+
+Parameters StrainLimiter::Implementation::as_run(Parameters given) const {
+    if (options.positions_only) given.stepping = Stepping::whole_step;
+    return given;
 }
 
 void StrainLimiter::Implementation::queue_parameters(CommandSequence& commands,
                                                      std::span<const Parameters> given) const {
     // A fill takes its pattern at once and a launch its arguments, so nothing of the caller's has to outlive this call.
     if (given.size() == 1) {
-        const apsl_parameters pattern = device_parameters(given[0]);
+        const apsl_parameters pattern = device_parameters(as_run(given[0]));
         commands.fill(parameters, &pattern, sizeof pattern, 0, cloth_count * sizeof pattern);
         return;
     }
     for (cl_uint first = 0; first < cloth_count; first += APSL_PARAMETER_BLOCK) {
         const cl_uint count = std::min<cl_uint>(cloth_count - first, APSL_PARAMETER_BLOCK);
         apsl_parameter_block block{};
-        std::transform(given.begin() + first, given.begin() + first + count, block.entry, device_parameters);
+        std::transform(given.begin() + first, given.begin() + first + count, block.entry,
+                       [&](const Parameters& p) { return device_parameters(as_run(p)); });
         set_arguments(set_parameters, 1, block, first, count);
         commands.launch(set_parameters, 1, options.work_group_size, 1);
     }
@@ -335,7 +359,9 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
         validate(p);
         sub_steps = std::max(sub_steps, p.sub_steps);
         max_iterations = std::max(max_iterations, p.max_iterations);
-        walking = walking || walked_sub_steps(p) > 0;
+        if (options.positions_only && p.stepping == Stepping::small_steps)
+            invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
+        walking = walking || walked_sub_steps(as_run(p)) > 0;
     }
     check_buffers(buffers);
     bind(buffers);

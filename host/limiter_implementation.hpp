@@ -65,6 +65,8 @@ private:
     void create_apply_kernels();
     void check_buffers(const Buffers& buffers) const;
     void bind(const Buffers& buffers) const;
+    /// With `automatic` replaced where the options leave no choice.
+    Parameters as_run(Parameters given) const;
     void queue_parameters(host::CommandSequence& commands, std::span<const Parameters> given) const;
     void use_pressures(const host::BufferHandle& pressure) const;
     void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;

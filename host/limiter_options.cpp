@@ -26,8 +26,24 @@ constexpr int usual_iterations = 8;
     throw Error(ErrorCode::invalid_argument, what);
 }
 
-void check_stride(std::uint32_t stride, const char* name) {
-    if (stride < 3) invalid(std::string(name) + " is " + std::to_string(stride) + ", expected at least 3");
+// Vertices side by side, or components in runs: otherwise two numbers share a place.
+void check_vector_strides(std::uint32_t stride, std::uint32_t component_stride, std::size_t vertices,
+                          const std::string& name) {
+    if (component_stride == 0) invalid(name + "_component_stride is 0, expected at least 1");
+    if (stride > std::size_t{2} * component_stride) return;
+    if (component_stride == 1) invalid(name + "_stride is " + std::to_string(stride) + ", expected at least 3");
+    if (stride == 0) invalid(name + "_stride is 0, expected at least 1");
+    const std::size_t run = (vertices - 1) * stride + 1;
+    if (component_stride < run)
+        invalid(name + "_component_stride is " + std::to_string(component_stride) + ", expected at least " +
+                std::to_string(run) + " for " + std::to_string(vertices) + " vertices with " + name + "_stride " +
+                std::to_string(stride));
+}
+
+std::size_t total_vertices(std::span<const std::shared_ptr<const Topology>> cloths) {
+    std::size_t total = 0;
+    for (const auto& topology : cloths) total += topology->vertex_count();
+    return total;
 }
 
 bool matrix_free_consistent(const Options& options) {
@@ -67,8 +83,10 @@ std::size_t largest_triangle_count(std::span<const std::shared_ptr<const Topolog
 }
 
 Options resolve(Options options, const DeviceFacts& facts, std::span<const std::shared_ptr<const Topology>> cloths) {
-    check_stride(options.position_stride, "position_stride");
-    check_stride(options.velocity_stride, "velocity_stride");
+    const std::size_t vertices = total_vertices(cloths);
+    check_vector_strides(options.position_stride, options.position_component_stride, vertices, "position");
+    check_vector_strides(options.velocity_stride, options.velocity_component_stride, vertices, "velocity");
+    if (options.inverse_mass_stride == 0) invalid("inverse_mass_stride is 0, expected at least 1");
     if (options.matrix != Matrix::consistent && options.matrix != Matrix::printed) invalid("unknown matrix");
     if (options.apply != Apply::assembled_csr && options.apply != Apply::matrix_free) invalid("unknown apply");
     options.execution = resolve_execution(options, facts, largest_triangle_count(cloths));
@@ -92,10 +110,10 @@ bool uses_pattern(const Options& options) {
 
 std::vector<std::string_view> kernel_files(const Options& options) {
     if (options.execution == Execution::one_group) return {"set_parameters.cl", "filter_in_one_group.cl"};
-    std::vector<std::string_view> files{"set_parameters.cl",        "predict_positions.cl",  "start_walk.cl",
-                                        "order_triangle_values.cl", "assemble_gradients.cl", "measure_area_change.cl",
-                                        "solve_control.cl",         "cg_update.cl",          "gather_displacements.cl",
-                                        "update_velocities.cl"};
+    std::vector<std::string_view> files{"set_parameters.cl",     "predict_positions.cl",    "order_triangle_values.cl",
+                                        "assemble_gradients.cl", "measure_area_change.cl",  "solve_control.cl",
+                                        "cg_update.cl",          "gather_displacements.cl", "update_velocities.cl"};
+    if (!options.positions_only) files.push_back("start_walk.cl");
     if (options.kept_pressures > 0) files.push_back("first_guess.cl");
     if (options.apply == Apply::assembled_csr)
         files.insert(files.end(), {"assemble_pressure_csr.cl", "csr_spmv_dot.cl"});
@@ -113,6 +131,10 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
     return "-cl-std=CL1.2" + define("APSL_WORK_GROUP_SIZE", options.work_group_size) +
            define("APSL_POSITION_STRIDE", options.position_stride) +
            define("APSL_VELOCITY_STRIDE", options.velocity_stride) +
+           define("APSL_POSITION_COMPONENT_STRIDE", options.position_component_stride) +
+           define("APSL_VELOCITY_COMPONENT_STRIDE", options.velocity_component_stride) +
+           define("APSL_INVERSE_MASS_STRIDE", options.inverse_mass_stride) +
+           define("APSL_POSITIONS_ONLY", options.positions_only ? 1 : 0) +
            define("APSL_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
            define("APSL_PATCH_VERTICES", patch_vertices) +
            define("APSL_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +

@@ -107,6 +107,6 @@ APSL_KERNEL void filter_in_one_group(
     group_memory_barrier();
     name_offender(stats, broken, bad_vertices > 0.0f, cloths[c], vertex_order, triangle_order, triangles, predicted,
                   ordered_rest_areas, scratch);
-    correct_velocities(cloths[c], !states[c].discarded, parameters[c].time_step, parameters[c].walked > 0, vertex_order,
-                       predicted, correction, positions + position_offset, velocities + velocity_offset);
+    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, parameters[c].walked > 0, vertex_order,
+                      predicted, correction, positions + position_offset, velocities + velocity_offset);
 }

@@ -2,6 +2,7 @@
 // Algorithm 1, output: ṽ ← ṽ + (x − (x̃ + Δt ṽ)) / Δt. Only the corrections go in: with x the predicted position, the
 // line as printed would count Δt ṽ twice. Reference: apsl::reference, strain_limiter. Moves 20 B + 24 B read, 12 B
 // written a vertex (strides of 3); after a walk 16 B more read.
+// With APSL_POSITIONS_ONLY the corrected positions instead: `velocities` is then the caller's positions.
 #include "layout.h"
 #include "vertex_motion.h"
 #include "work_group.h"
@@ -12,6 +13,6 @@ APSL_KERNEL void update_velocities(__global const apsl_cloth* cloths, __global c
                                    __global const float* positions, ulong position_offset, __global float* velocities,
                                    ulong velocity_offset) {
     const uint c = (uint)get_group_id(1);
-    correct_velocities(cloths[c], !states[c].discarded, parameters[c].time_step, parameters[c].walked > 0, vertex_order,
-                       predicted, correction, positions + position_offset, velocities + velocity_offset);
+    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, parameters[c].walked > 0, vertex_order,
+                      predicted, correction, positions + position_offset, velocities + velocity_offset);
 }

@@ -15,6 +15,34 @@
 #ifndef APSL_VELOCITY_STRIDE
 #define APSL_VELOCITY_STRIDE 3
 #endif
+// From x to y to z: 1 where they lie side by side.
+#ifndef APSL_POSITION_COMPONENT_STRIDE
+#define APSL_POSITION_COMPONENT_STRIDE 1
+#endif
+#ifndef APSL_VELOCITY_COMPONENT_STRIDE
+#define APSL_VELOCITY_COMPONENT_STRIDE 1
+#endif
+#ifndef APSL_INVERSE_MASS_STRIDE
+#define APSL_INVERSE_MASS_STRIDE 1
+#endif
+// Positions are those at the end of the step, in and out; there are no velocities.
+#ifndef APSL_POSITIONS_ONLY
+#define APSL_POSITIONS_ONLY 0
+#endif
+
+APSL_INLINE float3 load_vector(__global const float* x, ulong component_stride) {
+    return component_stride == 1 ? vload3(0, x) : (float3)(x[0], x[component_stride], x[2 * component_stride]);
+}
+
+APSL_INLINE void store_vector(float3 v, __global float* x, ulong component_stride) {
+    if (component_stride == 1) {
+        vstore3(v, 0, x);
+    } else {
+        x[0] = v.x;
+        x[component_stride] = v.y;
+        x[2 * component_stride] = v.z;
+    }
+}
 
 // Explicitly fused, so that predicting twice gives the same bits whatever the compiler contracts.
 APSL_INLINE float3 predicted_position(float3 position, float3 velocity, float time_step) {
@@ -22,11 +50,21 @@ APSL_INLINE float3 predicted_position(float3 position, float3 velocity, float ti
 }
 
 APSL_INLINE float3 load_position(__global const float* positions, uint vertex) {
-    return vload3(0, positions + (ulong)vertex * APSL_POSITION_STRIDE);
+    return load_vector(positions + (ulong)vertex * APSL_POSITION_STRIDE, APSL_POSITION_COMPONENT_STRIDE);
 }
 
 APSL_INLINE float3 load_velocity(__global const float* velocities, uint vertex) {
-    return vload3(0, velocities + (ulong)vertex * APSL_VELOCITY_STRIDE);
+    return load_vector(velocities + (ulong)vertex * APSL_VELOCITY_STRIDE, APSL_VELOCITY_COMPONENT_STRIDE);
+}
+
+// x̃ + Δt ṽ of the caller's vertex, or where there are no velocities the position as given, to the bit.
+APSL_INLINE float3 end_of_step(__global const float* positions, __global const float* velocities, uint vertex,
+                               float time_step) {
+#if APSL_POSITIONS_ONLY
+    return load_position(positions, vertex);
+#else
+    return predicted_position(load_position(positions, vertex), load_velocity(velocities, vertex), time_step);
+#endif
 }
 
 // Of (x̃ + Δt ṽ, inverse mass). A position or velocity that is not finite leaves nothing finite.
@@ -43,9 +81,8 @@ APSL_INLINE float predict_vertices(apsl_cloth cloth, float time_step, __global c
     float bad = 0.0f;
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint i = vertex_order[cloth.vertex_begin + v];
-        const float4 x =
-            (float4)(predicted_position(load_position(positions, i), load_velocity(velocities, i), time_step),
-                     inverse_masses[i]);
+        const float4 x = (float4)(end_of_step(positions, velocities, i, time_step),
+                                  inverse_masses[(ulong)i * APSL_INVERSE_MASS_STRIDE]);
         predicted[cloth.vertex_begin + v] = x;
         bad += is_bad_vertex(x) ? 1.0f : 0.0f;
     }
@@ -127,8 +164,38 @@ APSL_INLINE void correct_velocities(apsl_cloth cloth, bool active, float time_st
                                      : x.xyz - predicted_position(load_position(positions, i), before, time_step);
         const float3 after = before + moved * (1.0f / time_step);
         // No area vouches for a velocity that overflows.
-        if (all(isfinite(after))) vstore3(after, 0, velocities + (ulong)i * APSL_VELOCITY_STRIDE);
+        if (all(isfinite(after)))
+            store_vector(after, velocities + (ulong)i * APSL_VELOCITY_STRIDE, APSL_VELOCITY_COMPONENT_STRIDE);
     }
+}
+
+// The caller's positions ← the corrected ones. A pinned vertex keeps every bit.
+APSL_INLINE void store_positions(apsl_cloth cloth, bool active, __global const uint* vertex_order,
+                                 __global const float4* predicted, __global float* positions) {
+    const apsl_range range = share_of(cloth.vertex_count, active);
+    for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
+        const uint place = cloth.vertex_begin + v;
+        const float4 x = predicted[place];
+        if (x.w > 0.0f && all(isfinite(x)))
+            store_vector(x.xyz, positions + (ulong)vertex_order[place] * APSL_POSITION_STRIDE,
+                         APSL_POSITION_COMPONENT_STRIDE);
+    }
+}
+
+// What a call leaves the caller. `corrected` is the velocities, or the positions where there are none.
+APSL_INLINE void store_corrections(apsl_cloth cloth, bool active, float time_step, bool walking,
+                                   __global const uint* vertex_order, __global const float4* predicted,
+                                   __global const float4* correction, __global const float* positions,
+                                   __global float* corrected) {
+#if APSL_POSITIONS_ONLY
+    (void)time_step;
+    (void)walking;
+    (void)correction;
+    (void)positions;
+    store_positions(cloth, active, vertex_order, predicted, corrected);
+#else
+    correct_velocities(cloth, active, time_step, walking, vertex_order, predicted, correction, positions, corrected);
+#endif
 }
 
 #endif

@@ -70,8 +70,12 @@ typedef struct apsl_limiter_options {
     int32_t apply;                       /* apsl_apply */
     int32_t execution;                   /* apsl_execution */
     uint32_t work_group_size;            /* a power of two; 0 takes what suits the device */
-    uint32_t position_stride;            /* floats from one vertex to the next, >= 3 */
+    uint32_t position_stride;            /* floats from one vertex to the next, >= 3; 1 and more with runs */
     uint32_t velocity_stride;            /* likewise */
+    uint32_t position_component_stride;  /* floats from x to y to z: 1 side by side, else runs of their own */
+    uint32_t velocity_component_stride;  /* likewise */
+    uint32_t inverse_mass_stride;        /* floats from one to the next, >= 1 */
+    int32_t positions_only;              /* not 0: no velocities; positions are the end of the step, in and out */
     int32_t regularization_per_triangle; /* not 0: a regularization buffer is given with every call */
     uint32_t kept_pressures;             /* sub-steps whose pressures the next call's solves start from */
 } apsl_limiter_options;
@@ -97,9 +101,10 @@ typedef struct apsl_buffer_view {
 
 /* apsl::Buffers; several cloths follow one another. */
 typedef struct apsl_limiter_buffers {
-    apsl_buffer_view positions;      /* m, [V] with position_stride; the start of the step; only read */
-    apsl_buffer_view velocities;     /* m/s, [V] with velocity_stride; in and out */
-    apsl_buffer_view inverse_masses; /* 1/kg, [V], 0 pins a vertex */
+    apsl_buffer_view positions;      /* m, [V] with position_stride; the start of the step; only read. With
+                                        positions_only the end of the step, in and out */
+    apsl_buffer_view velocities;     /* m/s, [V] with velocity_stride; in and out; null with positions_only */
+    apsl_buffer_view inverse_masses; /* 1/kg, [V] with inverse_mass_stride, 0 pins a vertex */
     apsl_buffer_view rest_areas;     /* m2, [T] */
     apsl_buffer_view regularization; /* alpha, [T]; only with regularization_per_triangle, else a null buffer */
 } apsl_limiter_buffers;

@@ -26,9 +26,20 @@ struct Options {
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;
-    /// Floats from one vertex to the next in positions and in velocities, ≥ 3.
+    /// Floats from one vertex to the next in positions and in velocities: ≥ 3, or 1 and more where components lie in
+    /// runs of their own.
     std::uint32_t position_stride = 3;
     std::uint32_t velocity_stride = 3;
+    /// Floats from x to y and from y to z: 1 side by side (xyzxyz…); otherwise a number such that the runs do not
+    /// overlap (structure of arrays: xxx…yyy…zzz… has stride 1 and here the vertices that there is room for).
+    std::uint32_t position_component_stride = 1;
+    std::uint32_t velocity_component_stride = 1;
+    /// Floats from one inverse mass to the next, ≥ 1. In the w of xyzw positions: 4, and Buffers::inverse_masses at the
+    /// positions' offset + 12.
+    std::uint32_t inverse_mass_stride = 1;
+    /// There are no velocities: positions are those at the end of the step, and a call corrects them in place, as a
+    /// constraint of position-based dynamics does. Parameters::time_step is not used, and steps stay whole.
+    bool positions_only = false;
     /// A regularization buffer is given with every call.
     bool regularization_per_triangle = false;
     /// The pressures of so many sub-steps of a call (4 B a triangle each; later sub-steps share the last) are kept, and
@@ -47,9 +58,12 @@ struct BufferView {
 /// 32-bit floats in the caller's buffers. With several cloths their vertices and triangles follow one another in the
 /// order the cloths were given in.
 struct Buffers {
-    BufferView positions;   ///< m, 3 floats every Options::position_stride, [V]; x̃, the start of the step; only read
-    BufferView velocities;  ///< m/s, 3 floats every Options::velocity_stride, [V]; ṽ in and out
-    BufferView inverse_masses;       ///< 1/kg, [V], 0 pins a vertex
+    /// m, 3 floats every Options::position_stride, [V]; x̃, the start of the step; only read. With
+    /// Options::positions_only the end of the step, in and out.
+    BufferView positions;
+    /// m/s, 3 floats every Options::velocity_stride, [V]; ṽ in and out. Null with Options::positions_only.
+    BufferView velocities;
+    BufferView inverse_masses;       ///< 1/kg, 1 float every Options::inverse_mass_stride, [V], 0 pins a vertex
     BufferView rest_areas;           ///< m², [T]; a triangle with rest area ≤ 0 is left alone
     BufferView regularization = {};  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
 };

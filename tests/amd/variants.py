@@ -14,7 +14,10 @@ from pathlib import Path
 AXES = [
     [{"APSL_WORK_GROUP_SIZE": 64}, {"APSL_WORK_GROUP_SIZE": 256}],
     [{"APSL_MATRIX": 0}, {"APSL_MATRIX": 1}],
-    [{"APSL_POSITION_STRIDE": 3, "APSL_VELOCITY_STRIDE": 3}, {"APSL_POSITION_STRIDE": 4, "APSL_VELOCITY_STRIDE": 4}],
+    # xyz, xyzw with the inverse mass in the positions' w, a structure of arrays, xyzw positions alone.
+    [{"APSL_POSITION_STRIDE": stride, "APSL_VELOCITY_STRIDE": stride, "APSL_POSITION_COMPONENT_STRIDE": component,
+      "APSL_VELOCITY_COMPONENT_STRIDE": component, "APSL_INVERSE_MASS_STRIDE": mass, "APSL_POSITIONS_ONLY": positions}
+     for stride, component, mass, positions in [(3, 1, 1, 0), (4, 1, 4, 0), (1, 65536, 1, 0), (4, 1, 4, 1)]],
     [{"APSL_REGULARIZATION_PER_TRIANGLE": 0}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1}],
     [{"APSL_KEPT_PRESSURES": 0}, {"APSL_KEPT_PRESSURES": 8}],
     # What the patches of 512 triangles of most meshes have; host/ passes the number of the meshes at hand.

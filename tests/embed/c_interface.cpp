@@ -153,6 +153,10 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.work_group_size == options.work_group_size);
     CHECK(o.position_stride == options.position_stride);
     CHECK(o.velocity_stride == options.velocity_stride);
+    CHECK(o.position_component_stride == options.position_component_stride);
+    CHECK(o.velocity_component_stride == options.velocity_component_stride);
+    CHECK(o.inverse_mass_stride == options.inverse_mass_stride);
+    CHECK(o.positions_only == 0);
     CHECK(o.regularization_per_triangle == 0);
     CHECK(o.kept_pressures == options.kept_pressures);
     const apsl_limiter_parameters p = apsl_limiter_default_parameters();

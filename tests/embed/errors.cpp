@@ -49,6 +49,11 @@ TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]"
     const auto options = [](const Options& o) { return [o] { limiter(o); }; };
     check_invalid("position_stride is 2, expected at least 3", options({.position_stride = 2}));
     check_invalid("velocity_stride is 0, expected at least 3", options({.velocity_stride = 0}));
+    check_invalid("position_component_stride is 0", options({.position_component_stride = 0}));
+    check_invalid("velocity_component_stride is 24, expected at least 25 for 25 vertices with velocity_stride 1",
+                  options({.velocity_stride = 1, .velocity_component_stride = 24}));
+    check_invalid("position_stride is 0", options({.position_stride = 0, .position_component_stride = 25}));
+    check_invalid("inverse_mass_stride is 0", options({.inverse_mass_stride = 0}));
     check_invalid("work_group_size is 48, expected a power of two", options({.work_group_size = 48}));
     check_invalid("matrix", options({.matrix = static_cast<Matrix>(7)}));
     check_invalid("apply", options({.apply = static_cast<Apply>(-1)}));
@@ -119,6 +124,15 @@ TEST_CASE("enqueue refuses buffers it cannot use, names them, and queues nothing
         check_invalid(buffer + " holds", with([](BufferView& view) { view.offset = 4; }));  // one float too few
         check_invalid(buffer, with([](BufferView& view) { view.offset = SIZE_MAX - 3; }));
     }
+    StrainLimiter positions_alone = limiter({.positions_only = true});
+    check_invalid("buffers.velocities is given, but Options::positions_only is on", [&] {
+        clReleaseEvent(positions_alone.enqueue(queue.get(), CallerBuffers({&cloth(), 1}, {}).views(), Parameters{}));
+    });
+    check_invalid("stepping is small_steps, which needs velocities", [&] {
+        Buffers views = CallerBuffers({&cloth(), 1}, {}).views();
+        views.velocities = {};
+        clReleaseEvent(positions_alone.enqueue(queue.get(), views, {.stepping = Stepping::small_steps}));
+    });
     StrainLimiter without = limiter();
     check_invalid("regularization_per_triangle is off",
                   [&] { clReleaseEvent(without.enqueue(queue.get(), buffers.views(), Parameters{})); });
