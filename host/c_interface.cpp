@@ -19,6 +19,7 @@ namespace {
 static_assert(sizeof(apsl_limiter_stats) == sizeof(apsl::Stats));
 static_assert(static_cast<int>(apsl::Status::worsened) == APSL_LIMITER_WORSENED);
 static_assert(static_cast<int>(apsl::Status::diverged) == APSL_LIMITER_DIVERGED);
+static_assert(static_cast<int>(apsl::Status::off) == APSL_LIMITER_OFF);
 static_assert(static_cast<int>(apsl::Offender::triangle) == APSL_OFFENDER_TRIANGLE);
 static_assert(static_cast<int>(apsl::Stepping::small_steps) == APSL_STEPPING_SMALL_STEPS);
 static_assert(static_cast<int>(apsl::ErrorCode::unsupported) == APSL_ERROR_UNSUPPORTED);
@@ -91,11 +92,30 @@ apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
             .max_iterations = p.max_iterations,
             .adaptive_iterations = p.adaptive_iterations,
             .first_regularization = p.first_regularization,
-            .stepping = static_cast<apsl::Stepping>(p.stepping)};
+            .stepping = static_cast<apsl::Stepping>(p.stepping),
+            .enabled = p.enabled != 0};
 }
 
 apsl::BufferView view_from(const apsl_buffer_view& view) {
     return {view.buffer, view.offset};
+}
+
+std::vector<std::shared_ptr<const apsl::Topology>> topologies_from(const apsl_topology* const* cloths, size_t count) {
+    if (count > 0) require(cloths, "cloths");
+    std::vector<std::shared_ptr<const apsl::Topology>> topologies;
+    for (size_t c = 0; c < count; ++c) {
+        require(cloths[c], "a cloth's topology");
+        topologies.push_back(cloths[c]->topology);
+    }
+    return topologies;
+}
+
+/// To the caller, or released where nobody wants it.
+void hand_over(cl_event end, cl_event* event) {
+    if (event)
+        *event = end;
+    else
+        clReleaseEvent(end);
 }
 
 }  // namespace
@@ -130,7 +150,8 @@ apsl_limiter_parameters apsl_limiter_default_parameters(void) {
             p.max_iterations,
             p.adaptive_iterations,
             p.first_regularization,
-            static_cast<int32_t>(p.stepping)};
+            static_cast<int32_t>(p.stepping),
+            p.enabled};
 }
 
 apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_count, size_t vertex_count,
@@ -155,14 +176,15 @@ apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const a
     return guarded([&] {
         require(limiter, "limiter");
         *limiter = nullptr;
-        if (cloth_count > 0) require(cloths, "cloths");
-        std::vector<std::shared_ptr<const apsl::Topology>> topologies;
-        for (size_t c = 0; c < cloth_count; ++c) {
-            require(cloths[c], "a cloth's topology");
-            topologies.push_back(cloths[c]->topology);
-        }
-        *limiter = new apsl_limiter{
-            apsl::StrainLimiter(context, device, topologies, options ? options_from(*options) : apsl::Options{})};
+        *limiter = new apsl_limiter{apsl::StrainLimiter(context, device, topologies_from(cloths, cloth_count),
+                                                        options ? options_from(*options) : apsl::Options{})};
+    });
+}
+
+apsl_result apsl_limiter_rebuild(apsl_limiter* limiter, const apsl_topology* const* cloths, size_t cloth_count) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        limiter->limiter.rebuild(topologies_from(cloths, cloth_count));
     });
 }
 
@@ -189,10 +211,20 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
                                   .rest_areas = view_from(buffers->rest_areas),
                                   .regularization = view_from(buffers->regularization)};
         const cl_event end = limiter->limiter.enqueue(queue, views, list, events(wait_count, wait_list));
-        if (event)
-            *event = end;
-        else
-            clReleaseEvent(end);
+        hand_over(end, event);
+    });
+}
+
+apsl_result apsl_limiter_enqueue_rest_areas(apsl_limiter* limiter, cl_command_queue queue,
+                                            const apsl_buffer_view* rest_positions, const apsl_buffer_view* rest_areas,
+                                            cl_uint wait_count, const cl_event* wait_list, cl_event* event) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        require(rest_positions, "rest_positions");
+        require(rest_areas, "rest_areas");
+        hand_over(limiter->limiter.enqueue_rest_areas(queue, view_from(*rest_positions), view_from(*rest_areas),
+                                                      events(wait_count, wait_list)),
+                  event);
     });
 }
 

@@ -13,8 +13,18 @@ apsl_parameters device_parameters(const Parameters& p) {
                                                static_cast<float>(p.sub_steps - 1)
                                          : 0.0f;
     const float tolerance = solve_tolerance(p);
-    return {p.time_step, p.regularization, damping_step,          p.target_area_change, tolerance * tolerance,
-            p.sub_steps, p.max_iterations, p.adaptive_iterations, walked_sub_steps(p),  {}};
+    const bool on = p.enabled;
+    return {.time_step = p.time_step,
+            .regularization = p.regularization,
+            .damping_step = damping_step,
+            .target_area_change = p.target_area_change,
+            .tolerance_squared = tolerance * tolerance,
+            .sub_steps = on ? p.sub_steps : 0,
+            .max_iterations = p.max_iterations,
+            .adaptive_iterations = p.adaptive_iterations,
+            .walked = on ? walked_sub_steps(p) : 0,
+            .enabled = on,
+            .padding = {}};
 }
 
 }  // namespace apsl::host

@@ -24,6 +24,7 @@ static_assert(std::has_single_bit(sizeof(apsl_parameters)), "clEnqueueFillBuffer
 static_assert(static_cast<int>(Status::not_converged) == APSL_STATUS_NOT_CONVERGED);
 static_assert(static_cast<int>(Status::worsened) == APSL_STATUS_WORSENED);
 static_assert(static_cast<int>(Status::diverged) == APSL_STATUS_DIVERGED);
+static_assert(static_cast<int>(Status::off) == APSL_STATUS_OFF);
 static_assert(static_cast<int>(Offender::triangle) == APSL_OFFENDER_TRIANGLE);
 
 // Bytes of a triangle's corner gradients (kernels/gradients.h).
@@ -34,16 +35,15 @@ constexpr std::size_t gradient_bytes = 32;
 }
 
 void check_view(const BufferView& view, std::size_t floats, const char* name) {
-    if (!view.buffer) invalid(std::string("buffers.") + name + " is null");
+    if (!view.buffer) invalid(std::string(name) + " is null");
     if (view.offset % sizeof(float) != 0)
-        invalid(std::string("buffers.") + name + " has offset " + std::to_string(view.offset) +
-                ", expected a multiple of 4 bytes");
+        invalid(std::string(name) + " has offset " + std::to_string(view.offset) + ", expected a multiple of 4 bytes");
     std::size_t size = 0;
     check(clGetMemObjectInfo(view.buffer, CL_MEM_SIZE, sizeof size, &size, nullptr), "asking a buffer for its size");
     const std::size_t needed = floats * sizeof(float);
     // Subtracted rather than added: an offset near the end of the range must not wrap round.
     if (view.offset > size || size - view.offset < needed)
-        invalid(std::string("buffers.") + name + " holds " + std::to_string(size) + " bytes, expected at least " +
+        invalid(std::string(name) + " holds " + std::to_string(size) + " bytes, expected at least " +
                 std::to_string(needed) + " from offset " + std::to_string(view.offset) + " on");
 }
 
@@ -60,17 +60,24 @@ void check_topologies(std::span<const std::shared_ptr<const Topology>> cloths) {
 
 }  // namespace
 
-StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id device,
+StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id the_device,
                                               std::span<const std::shared_ptr<const Topology>> topologies,
-                                              const Options& requested)
-    : facts(device_facts(device)), context(the_context) {
+                                              const Options& requested, const Implementation* built)
+    : facts(built ? built->facts : device_facts(the_device)), context(the_context), device(the_device) {
     check_topologies(topologies);
     options = resolve(requested, facts, topologies);
     largest_cloth = largest_triangle_count(topologies);
     const Adjacency adjacency = build_adjacency(topologies, options.matrix, uses_pattern(options),
                                                 patch_triangles(facts, options, largest_cloth));
-    program = build_program(context, device, program_source(kernel_files(options)),
-                            build_options(options, adjacency.max_patch_vertices));
+    if (built && adjacency.max_patch_vertices <= built->patch_vertex_room) {
+        patch_vertex_room = built->patch_vertex_room;
+        check(clRetainProgram(built->program.get()), "keeping the kernel program");
+        program = ProgramHandle(built->program.get());
+    } else {
+        patch_vertex_room = room_for_patches(adjacency.max_patch_vertices);
+        program = build_program(context, device, program_source(kernel_files(options)),
+                                build_options(options, patch_vertex_room));
+    }
     create_buffers(adjacency);
     create_kernels();
 }
@@ -145,6 +152,8 @@ void StrainLimiter::Implementation::create_kernels() {
     const auto kernel = [&](const char* name) { return create_kernel(program.get(), name); };
     set_parameters = kernel("set_parameters");
     set_arguments(set_parameters, 0, parameters);
+    rest_areas = kernel("rest_areas");
+    set_arguments(rest_areas, 0, cloths, vertex_order, triangle_order, triangles);
     if (one_group()) {
         filter_in_one_group = kernel("filter_in_one_group");
         set_arguments(filter_in_one_group, 0, cloths, parameters, states, stats, vertex_order, triangle_order,
@@ -163,12 +172,13 @@ void StrainLimiter::Implementation::create_kernels() {
         set_arguments(start_walk, 0, cloths, parameters, states, vertex_order, predicted, motion, correction);
     }
     order_triangle_values = kernel("order_triangle_values");
-    set_arguments(order_triangle_values, 0, cloths, triangle_order, ordered_rest_areas, ordered_regularization);
+    set_arguments(order_triangle_values, 0, cloths, parameters, triangle_order, ordered_rest_areas,
+                  ordered_regularization);
     assemble_gradients = kernel("assemble_gradients");
     set_arguments(assemble_gradients, 0, cloths, parameters, states, partials, triangles, predicted, gradients,
                   residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
     measure_area_change = kernel("measure_area_change");
-    set_arguments(measure_area_change, 0, cloths, partials, triangles, predicted, ordered_rest_areas);
+    set_arguments(measure_area_change, 0, cloths, parameters, partials, triangles, predicted, ordered_rest_areas);
     begin_solve = kernel("begin_solve");
     set_arguments(begin_solve, 0, parameters, states, stats, partials, groups);
     end_call = kernel("end_call");
@@ -217,20 +227,23 @@ void StrainLimiter::Implementation::create_apply_kernels() {
     }
 }
 
+std::size_t StrainLimiter::Implementation::position_floats() const {
+    return vector_extent(vertex_count, options.position_stride, options.position_component_stride);
+}
+
 void StrainLimiter::Implementation::check_buffers(const Buffers& buffers) const {
-    check_view(buffers.positions,
-               vector_extent(vertex_count, options.position_stride, options.position_component_stride), "positions");
+    check_view(buffers.positions, position_floats(), "buffers.positions");
     if (!options.positions_only)
         check_view(buffers.velocities,
                    vector_extent(vertex_count, options.velocity_stride, options.velocity_component_stride),
-                   "velocities");
+                   "buffers.velocities");
     else if (buffers.velocities.buffer)
         invalid("buffers.velocities is given, but Options::positions_only is on");
     check_view(buffers.inverse_masses, std::size_t{vertex_count - 1} * options.inverse_mass_stride + 1,
-               "inverse_masses");
-    check_view(buffers.rest_areas, rest_area_count, "rest_areas");
+               "buffers.inverse_masses");
+    check_view(buffers.rest_areas, rest_area_count, "buffers.rest_areas");
     if (options.regularization_per_triangle)
-        check_view(buffers.regularization, rest_area_count, "regularization");
+        check_view(buffers.regularization, rest_area_count, "buffers.regularization");
     else if (buffers.regularization.buffer)
         invalid("buffers.regularization is given, but Options::regularization_per_triangle is off");
 }
@@ -257,8 +270,8 @@ void StrainLimiter::Implementation::bind(const Buffers& buffers) const {
         set(start_walk, 7, buffers.positions);
         set(start_walk, 9, buffers.velocities);
     }
-    set(order_triangle_values, 4, buffers.rest_areas);
-    set(order_triangle_values, 6, regularization);
+    set(order_triangle_values, 5, buffers.rest_areas);
+    set(order_triangle_values, 7, regularization);
     set(update_velocities, 6, buffers.positions);
     set(update_velocities, 8, corrected);
 }
@@ -357,6 +370,7 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
     bool walking = false;
     for (const Parameters& p : given) {
         validate(p);
+        if (!p.enabled) continue;
         sub_steps = std::max(sub_steps, p.sub_steps);
         max_iterations = std::max(max_iterations, p.max_iterations);
         if (options.positions_only && p.stepping == Stepping::small_steps)
@@ -372,6 +386,18 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
         launch_one_group(commands, filter_in_one_group);
     else
         queue_many_groups(commands, sub_steps, max_iterations, walking);
+    return commands.end();
+}
+
+cl_event StrainLimiter::Implementation::enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions,
+                                                           const BufferView& areas,
+                                                           std::span<const cl_event> wait_list) {
+    check_view(rest_positions, position_floats(), "rest_positions");
+    check_view(areas, rest_area_count, "rest_areas");
+    set_arguments(rest_areas, 4, rest_positions.buffer, cl_ulong{rest_positions.offset / sizeof(float)}, areas.buffer,
+                  cl_ulong{areas.offset / sizeof(float)});
+    CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
+    launch(commands, rest_areas);
     return commands.end();
 }
 

@@ -17,15 +17,20 @@ namespace apsl {
 /// The device side of a limiter: its buffers, its kernels, and the order of launches that makes Algorithm 1.
 /// A kernel or buffer that the options do not need stays empty.
 struct StrainLimiter::Implementation {
+    /// With the program of `built` where it fits; `built` may be null.
     Implementation(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
-                   const Options& requested);
+                   const Options& requested, const Implementation* built = nullptr);
 
     cl_event enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,
                      std::span<const cl_event> wait_list);
+    cl_event enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions, const BufferView& areas,
+                                std::span<const cl_event> wait_list);
 
     host::DeviceFacts facts;
     Options options;
     cl_context context;
+    cl_device_id device;
+    std::uint32_t patch_vertex_room = 0;  ///< vertices of a patch that the program has room for
     std::uint32_t cloth_count = 0, vertex_count = 0, triangle_count = 0, rest_area_count = 0, groups = 1;
     std::size_t largest_cloth = 0;  ///< triangles
     std::size_t bytes = 0;
@@ -42,8 +47,8 @@ struct StrainLimiter::Implementation {
     std::vector<host::BufferHandle> pressures;
 
     host::ProgramHandle program;
-    host::Kernel set_parameters, predict_positions, order_triangle_values, assemble_gradients, measure_area_change,
-        begin_call, start_walk, begin_solve, end_call;
+    host::Kernel set_parameters, rest_areas, predict_positions, order_triangle_values, assemble_gradients,
+        measure_area_change, begin_call, start_walk, begin_solve, end_call;
     host::Kernel assemble_pressure_csr, apply_dot, cg_update, finish_solve, gather_displacements, update_velocities;
     host::Kernel measure_guess, start_from_guess;
     host::Kernel filter_in_one_group;
@@ -63,6 +68,8 @@ private:
     void create_buffers(const host::Adjacency& adjacency);
     void create_kernels();
     void create_apply_kernels();
+    /// From the first of the caller's positions to the last.
+    std::size_t position_floats() const;
     void check_buffers(const Buffers& buffers) const;
     void bind(const Buffers& buffers) const;
     /// With `automatic` replaced where the options leave no choice.

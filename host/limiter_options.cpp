@@ -109,10 +109,12 @@ bool uses_pattern(const Options& options) {
 }
 
 std::vector<std::string_view> kernel_files(const Options& options) {
-    if (options.execution == Execution::one_group) return {"set_parameters.cl", "filter_in_one_group.cl"};
+    if (options.execution == Execution::one_group)
+        return {"set_parameters.cl", "rest_areas.cl", "filter_in_one_group.cl"};
     std::vector<std::string_view> files{"set_parameters.cl",     "predict_positions.cl",    "order_triangle_values.cl",
                                         "assemble_gradients.cl", "measure_area_change.cl",  "solve_control.cl",
-                                        "cg_update.cl",          "gather_displacements.cl", "update_velocities.cl"};
+                                        "cg_update.cl",          "gather_displacements.cl", "update_velocities.cl",
+                                        "rest_areas.cl"};
     if (!options.positions_only) files.push_back("start_walk.cl");
     if (options.kept_pressures > 0) files.push_back("first_guess.cl");
     if (options.apply == Apply::assembled_csr)
@@ -122,6 +124,11 @@ std::vector<std::string_view> kernel_files(const Options& options) {
     else
         files.insert(files.end(), {"matrix_free_consistent.cl", "finish_solve.cl"});
     return files;
+}
+
+std::uint32_t room_for_patches(std::uint32_t largest) {
+    constexpr std::uint32_t step = 64;  // 1 KiB of local memory
+    return (largest + step - 1) / step * step;
 }
 
 std::string build_options(const Options& options, std::uint32_t patch_vertices) {

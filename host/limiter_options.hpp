@@ -26,7 +26,11 @@ bool uses_pattern(const Options& options);
 /// The files of kernels/ that the options need, and no others.
 std::vector<std::string_view> kernel_files(const Options& options);
 
-/// `patch_vertices`: the most vertices any patch has.
+/// Vertices of a patch to compile for where the largest has so many: rounded up, so that a mesh whose topology changes
+/// a little needs no other program.
+std::uint32_t room_for_patches(std::uint32_t largest);
+
+/// `patch_vertices`: what a patch has room for.
 std::string build_options(const Options& options, std::uint32_t patch_vertices);
 
 /// Triangles a patch at most. On a CPU a patch's gradients and forces stay in the first cache; on a GPU a patch is two

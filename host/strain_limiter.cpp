@@ -20,6 +20,18 @@ StrainLimiter::~StrainLimiter() = default;
 StrainLimiter::StrainLimiter(StrainLimiter&&) noexcept = default;
 StrainLimiter& StrainLimiter::operator=(StrainLimiter&&) noexcept = default;
 
+void StrainLimiter::rebuild(std::span<const std::shared_ptr<const Topology>> cloths) {
+    const Implementation& built = *implementation_;
+    auto rebuilt = std::make_unique<Implementation>(built.context, built.device, cloths, built.options, &built);
+    rebuilt->profiling = built.profiling;
+    rebuilt->profile = std::move(implementation_->profile);
+    implementation_ = std::move(rebuilt);
+}
+
+void StrainLimiter::rebuild(const std::shared_ptr<const Topology>& cloth) {
+    rebuild(std::span(&cloth, 1));
+}
+
 std::size_t StrainLimiter::scratch_bytes() const noexcept {
     return implementation_->bytes;
 }
@@ -40,6 +52,11 @@ cl_event StrainLimiter::enqueue(cl_command_queue queue, const Buffers& buffers, 
 cl_event StrainLimiter::enqueue(cl_command_queue queue, const Buffers& buffers, const Parameters& parameters,
                                 std::span<const cl_event> wait_list) {
     return implementation_->enqueue(queue, buffers, std::span(&parameters, 1), wait_list);
+}
+
+cl_event StrainLimiter::enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions,
+                                           const BufferView& rest_areas, std::span<const cl_event> wait_list) {
+    return implementation_->enqueue_rest_areas(queue, rest_positions, rest_areas, wait_list);
 }
 
 cl_event StrainLimiter::read_stats(cl_command_queue queue, std::span<Stats> stats,

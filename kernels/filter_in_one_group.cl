@@ -34,14 +34,15 @@ APSL_KERNEL void filter_in_one_group(
     float worst_residual = 0.0f, factor = states[c].adaptive_factor;
     bool broken = false, converged = true, started = false;
 
-    const float bad_vertices = group_sum(
-        predict_vertices(cloths[c], parameters[c].time_step, vertex_order, predicted, positions + position_offset,
-                         velocities + velocity_offset, inverse_masses + inverse_mass_offset),
-        scratch);
-    order_values(cloths[c], triangle_order, ordered_rest_areas, ordered_regularization, rest_areas + rest_area_offset,
-                 regularization + regularization_offset);
+    const float bad_vertices =
+        group_sum(predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, vertex_order, predicted,
+                                   positions + position_offset, velocities + velocity_offset,
+                                   inverse_masses + inverse_mass_offset),
+                  scratch);
+    order_values(cloths[c], parameters[c].enabled, triangle_order, ordered_rest_areas, ordered_regularization,
+                 rest_areas + rest_area_offset, regularization + regularization_offset);
     float2 change = (float2)(0.0f);
-    for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
+    for (bool going_on = parameters[c].enabled; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
         const apsl_assembly_sums sums = assemble_triangles(
             cloths[c], true, parameters[c].regularization,
@@ -93,6 +94,10 @@ APSL_KERNEL void filter_in_one_group(
                 worst_residual = fmax(worst_residual, sqrt(solve.residual / solve.initial_residual));
         }
     }
+    if (!parameters[c].enabled && get_local_id(0) == 0) {
+        stats->initial_max_area_change = 0.0f;
+        stats->initial_rms_area_change = 0.0f;
+    }
     broken = broken || bad_vertices > 0.0f;
     if (get_local_id(0) == 0) {
         states[c].adaptive_factor = factor;
@@ -102,6 +107,7 @@ APSL_KERNEL void filter_in_one_group(
         stats->status = converged ? APSL_STATUS_OK : APSL_STATUS_NOT_CONVERGED;
         const bool worse = is_worse(stats, change.x, change.y);
         if (broken) stats->status = APSL_STATUS_DIVERGED;
+        if (!parameters[c].enabled) stats->status = APSL_STATUS_OFF;
         states[c].discarded = broken || worse || sub_steps == 0;
     }
     group_memory_barrier();

@@ -40,7 +40,8 @@ typedef struct {
     apsl_int max_iterations;
     apsl_int adaptive_iterations;  // 0: α stays as given
     apsl_int walked;               // sub-steps that move on by a part of Δt; 0: all correct at its end
-    apsl_int padding[7];
+    apsl_int enabled;              // 0: the cloth is left alone in this call
+    apsl_int padding[6];
 } apsl_parameters;
 
 // Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.
@@ -67,6 +68,7 @@ typedef struct {
 #define APSL_STATUS_NOT_CONVERGED 1
 #define APSL_STATUS_WORSENED 2
 #define APSL_STATUS_DIVERGED 3
+#define APSL_STATUS_OFF 4
 
 #define APSL_OFFENDER_NONE 0
 #define APSL_OFFENDER_VERTEX 1

@@ -14,15 +14,16 @@ APSL_KERNEL void predict_positions(__global const apsl_cloth* cloths, __global c
                                    __global const float* inverse_masses, ulong inverse_mass_offset) {
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const float bad =
-        predict_vertices(cloths[c], parameters[c].time_step, vertex_order, predicted, positions + position_offset,
-                         velocities + velocity_offset, inverse_masses + inverse_mass_offset);
+    const float bad = predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, vertex_order,
+                                       predicted, positions + position_offset, velocities + velocity_offset,
+                                       inverse_masses + inverse_mass_offset);
     store_partial(partials, APSL_PARTIAL_BAD_VERTICES, group_sum(bad, scratch));
     if (get_group_id(0) == 0 && get_local_id(0) == 0) {
-        states[c].stopped = 0;
+        states[c].stopped = !parameters[c].enabled;
         states[c].discarded = 0;
         states[c].iterating = 0;
         states[c].initial_residual = 0.0f;
-        stats[c] = (apsl_stats){0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, APSL_STATUS_OK, APSL_OFFENDER_NONE, 0};
+        const int status = parameters[c].enabled ? APSL_STATUS_OK : APSL_STATUS_OFF;
+        stats[c] = (apsl_stats){0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, status, APSL_OFFENDER_NONE, 0};
     }
 }

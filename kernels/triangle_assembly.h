@@ -27,10 +27,10 @@ APSL_INLINE void pack_gradient(apsl_triangle_geometry t, uint corner, lanes scal
 }
 
 // The caller's values in the limiter's order. The padding keeps what it was made with: no rest area.
-APSL_INLINE void order_values(apsl_cloth cloth, __global const uint* triangle_order, __global float* ordered_rest_areas,
-                              __global float* ordered_regularization, __global const float* rest_areas,
-                              __global const float* regularization) {
-    const apsl_range range = share_of(cloth.triangle_count, true);
+APSL_INLINE void order_values(apsl_cloth cloth, bool active, __global const uint* triangle_order,
+                              __global float* ordered_rest_areas, __global float* ordered_regularization,
+                              __global const float* rest_areas, __global const float* regularization) {
+    const apsl_range range = share_of(cloth.triangle_count, active);
     for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
         float rest_area = rest_areas[triangle_order[a]];
@@ -98,9 +98,9 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
 }
 
 // The areas alone.
-APSL_INLINE apsl_area_sums measure_triangles(apsl_cloth cloth, __global const uint* triangles,
+APSL_INLINE apsl_area_sums measure_triangles(apsl_cloth cloth, bool active, __global const uint* triangles,
                                              __global const float4* predicted, __global const float* rest_areas) {
-    const apsl_range range = share_of(blocks_of(cloth), true);
+    const apsl_range range = share_of(blocks_of(cloth), active);
     apsl_area_sums sums = no_areas();
     for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + block * APSL_LANES;

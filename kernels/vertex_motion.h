@@ -74,10 +74,10 @@ APSL_INLINE bool is_bad_vertex(float4 predicted) {
 
 // predicted = (x̃ + Δt ṽ, inverse mass), in the limiter's order of vertices. Returns how many of this work-item's are
 // bad.
-APSL_INLINE float predict_vertices(apsl_cloth cloth, float time_step, __global const uint* vertex_order,
+APSL_INLINE float predict_vertices(apsl_cloth cloth, bool active, float time_step, __global const uint* vertex_order,
                                    __global float4* predicted, __global const float* positions,
                                    __global const float* velocities, __global const float* inverse_masses) {
-    const apsl_range range = share_of(cloth.vertex_count, true);
+    const apsl_range range = share_of(cloth.vertex_count, active);
     float bad = 0.0f;
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint i = vertex_order[cloth.vertex_begin + v];

@@ -44,7 +44,8 @@ typedef enum apsl_limiter_status {
     APSL_LIMITER_OK = 0,
     APSL_LIMITER_NOT_CONVERGED = 1, /* a solve used all its iterations; the best state reached stands */
     APSL_LIMITER_WORSENED = 2,      /* area change rose; of start and end the state with less RMS stands */
-    APSL_LIMITER_DIVERGED = 3       /* not finite, going in or on the way: velocities are as they were given */
+    APSL_LIMITER_DIVERGED = 3,      /* not finite, going in or on the way: velocities are as they were given */
+    APSL_LIMITER_OFF = 4            /* enabled was 0: nothing was looked at */
 } apsl_limiter_status;
 
 /* What apsl_limiter_stats.offender_index counts. */
@@ -91,6 +92,7 @@ typedef struct apsl_limiter_parameters {
     int32_t adaptive_iterations; /* 0: alpha stays as given; else more iterations than this raise it */
     float first_regularization;  /* 0: alpha is the same in every sub-step; else > 1, that of the first */
     int32_t stepping;            /* apsl_stepping */
+    int32_t enabled;             /* 0: the cloth is left alone in this call; 1 by default */
 } apsl_limiter_parameters;
 
 /* apsl::BufferView: 32-bit floats in a buffer of the caller's. */
@@ -139,6 +141,11 @@ APSL_API void apsl_topology_destroy(apsl_topology* topology);
 APSL_API apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
                                          size_t cloth_count, const apsl_limiter_options* options,
                                          apsl_limiter** limiter);
+/* For other topologies, without compiling where the compiled program fits. Where this fails the limiter stays as it
+ * was. */
+APSL_API apsl_result apsl_limiter_rebuild(apsl_limiter* limiter, const apsl_topology* const* cloths,
+                                          size_t cloth_count);
+
 /* Null is allowed. */
 APSL_API void apsl_limiter_destroy(apsl_limiter* limiter);
 
@@ -151,6 +158,13 @@ APSL_API apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queu
                                           const apsl_limiter_buffers* buffers,
                                           const apsl_limiter_parameters* parameters, size_t parameter_count,
                                           cl_uint wait_count, const cl_event* wait_list, cl_event* event);
+
+/* Queues the areas of all triangles, m2, [T], at rest_positions (m, [V], laid out as options say of positions) into
+ * rest_areas: once, before the first call that reads them. The event is as that of apsl_limiter_enqueue. */
+APSL_API apsl_result apsl_limiter_enqueue_rest_areas(apsl_limiter* limiter, cl_command_queue queue,
+                                                     const apsl_buffer_view* rest_positions,
+                                                     const apsl_buffer_view* rest_areas, cl_uint wait_count,
+                                                     const cl_event* wait_list, cl_event* event);
 
 /* Queues a non-blocking read of the last call's statistics, stats_count the number of cloths. stats must live until the
  * event, which must not be null, completes. */

@@ -56,6 +56,9 @@ struct Parameters {
     /// regularization > 1; a per-triangle α is that of the last sub-step and is scaled alike.
     float first_regularization = 0.0f;
     Stepping stepping = Stepping::automatic;
+    /// false: the cloth is left alone, nothing of it is read or written, its statistics are zeros with Status::off, and
+    /// what is kept for its next call stays.
+    bool enabled = true;
 };
 
 /// Throws Error(invalid_argument) naming the first field that is out of range or not finite.

@@ -13,6 +13,7 @@ enum class Status : std::int32_t {
     /// stands: where that is the first, the velocities are as they were given.
     worsened = 2,
     diverged = 3,  ///< not finite, going in or on the way: positions and velocities are as they were given
+    off = 4,       ///< Parameters::enabled was false: nothing was looked at
 };
 
 /// What Stats::offender_index counts.

@@ -93,6 +93,13 @@ public:
     StrainLimiter(StrainLimiter&&) noexcept;
     StrainLimiter& operator=(StrainLimiter&&) noexcept;
 
+    /// For other topologies, of as many cloths as there are now or another number: a tear, a garment put on. Options
+    /// stay as resolved, and so does the compiled program, unless the new meshes' patches need more room than it has;
+    /// device memory is allocated anew, and what was kept from call to call (pressures, raised α, statistics) is gone.
+    /// Calls queued before complete undisturbed. Throws as the constructor does; the limiter then stays as it was.
+    void rebuild(std::span<const std::shared_ptr<const Topology>> cloths);
+    void rebuild(const std::shared_ptr<const Topology>& cloth);
+
     /// Device memory this object holds, adjacency included.
     std::size_t scratch_bytes() const noexcept;
     std::size_t cloth_count() const noexcept;
@@ -106,6 +113,12 @@ public:
                                    std::span<const Parameters> parameters, std::span<const cl_event> wait_list = {});
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers, const Parameters& parameters,
                                    std::span<const cl_event> wait_list = {});
+
+    /// Queues the areas of all triangles, m², [T], at `rest_positions` (m, [V], laid out as Options say of positions)
+    /// into `rest_areas`: once, before the first call that reads them, where the rest state is given as positions.
+    /// Queue, event and errors are as those of enqueue.
+    [[nodiscard]] cl_event enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions,
+                                              const BufferView& rest_areas, std::span<const cl_event> wait_list = {});
 
     /// Queues a non-blocking read of the last call's statistics, one entry for every cloth. `stats` must live until the
     /// returned event completes; the caller releases it. On an out-of-order queue put enqueue's event into wait_list.

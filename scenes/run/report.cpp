@@ -86,6 +86,8 @@ std::string status_name(Status status) {
             return "worsened";
         case Status::diverged:
             return "diverged";
+        case Status::off:
+            return "off";
     }
     return "diverged";
 }

@@ -283,6 +283,11 @@ template <class Real>
 void BasicStrainLimiter<Real>::enqueue(const Buffers<Real>& buffers, const Parameters& parameters) {
     validate(parameters);
     check(*implementation_->topology, buffers);
+    if (!parameters.enabled) {
+        implementation_->stats = {};
+        implementation_->stats.status = Status::off;
+        return;
+    }
     implementation_->filter(buffers, parameters);
 }
 

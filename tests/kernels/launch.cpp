@@ -79,10 +79,17 @@ void predict_positions(Arrays& a, const Build& build) {
     run(k, a.groups, build, a.cloth_count());
 }
 
+void rest_areas(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "rest_areas.cl", "rest_areas");
+    set_arguments(k, 0, a.cloths, a.vertex_order, a.triangle_order, a.triangles, a.caller_positions,
+                  cl_ulong{a.position_placement.offset}, a.rest_areas, cl_ulong{a.array_offset});
+    run(k, a.groups, build, a.cloth_count());
+}
+
 void order_triangle_values(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "order_triangle_values.cl", "order_triangle_values");
-    set_arguments(k, 0, a.cloths, a.triangle_order, a.ordered_rest_areas, a.ordered_regularization, a.rest_areas,
-                  cl_ulong{a.array_offset}, build.alpha_per_triangle ? a.regularization : a.rest_areas,
+    set_arguments(k, 0, a.cloths, a.parameters, a.triangle_order, a.ordered_rest_areas, a.ordered_regularization,
+                  a.rest_areas, cl_ulong{a.array_offset}, build.alpha_per_triangle ? a.regularization : a.rest_areas,
                   cl_ulong{a.array_offset});
     run(k, a.groups, build, a.cloth_count());
 }
@@ -96,7 +103,7 @@ void assemble_gradients(Arrays& a, const Build& build, int sub_step) {
 
 void measure_area_change(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "measure_area_change.cl", "measure_area_change");
-    set_arguments(k, 0, a.cloths, a.partials, a.triangles, a.predicted, a.ordered_rest_areas);
+    set_arguments(k, 0, a.cloths, a.parameters, a.partials, a.triangles, a.predicted, a.ordered_rest_areas);
     run(k, a.groups, build, a.cloth_count());
 }
 

@@ -28,6 +28,8 @@ namespace launch {
 void set_parameters(Arrays& arrays, const Build& build, const apsl_parameter_block& block, std::uint32_t first,
                     std::uint32_t count);
 void predict_positions(Arrays& arrays, const Build& build);
+/// Of the caller's positions, into the caller's rest areas.
+void rest_areas(Arrays& arrays, const Build& build);
 void order_triangle_values(Arrays& arrays, const Build& build);
 void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
 void measure_area_change(Arrays& arrays, const Build& build);
