@@ -62,36 +62,39 @@ void check_topologies(std::span<const std::shared_ptr<const Topology>> cloths) {
 
 StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id the_device,
                                               std::span<const std::shared_ptr<const Topology>> topologies,
-                                              const Options& requested, const Implementation* built)
-    : facts(built ? built->facts : device_facts(the_device)), context(the_context), device(the_device) {
+                                              const Options& requested, const DeviceFacts& the_facts,
+                                              const BufferView& scratch)
+    : facts(the_facts), context(the_context), device(the_device), memory(context, device, facts, scratch) {
     check_topologies(topologies);
     options = resolve(requested, facts, topologies);
     largest_cloth = largest_triangle_count(topologies);
     const Adjacency adjacency = build_adjacency(topologies, options.matrix, uses_pattern(options),
                                                 patch_triangles(facts, options, largest_cloth));
-    if (built && adjacency.max_patch_vertices <= built->patch_vertex_room) {
+    max_patch_vertices = adjacency.max_patch_vertices;
+    create_buffers(adjacency);
+}
+
+StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id the_device,
+                                              std::span<const std::shared_ptr<const Topology>> topologies,
+                                              const Options& requested, const BufferView& scratch,
+                                              const Implementation* built)
+    : Implementation(the_context, the_device, topologies, requested, built ? built->facts : device_facts(the_device),
+                     scratch) {
+    if (built && max_patch_vertices <= built->patch_vertex_room) {
         patch_vertex_room = built->patch_vertex_room;
         check(clRetainProgram(built->program.get()), "keeping the kernel program");
         program = ProgramHandle(built->program.get());
     } else {
-        patch_vertex_room = room_for_patches(adjacency.max_patch_vertices);
+        patch_vertex_room = room_for_patches(max_patch_vertices);
         program = build_program(context, device, program_source(kernel_files(options)),
                                 build_options(options, patch_vertex_room));
     }
-    create_buffers(adjacency);
     create_kernels();
 }
 
-BufferHandle StrainLimiter::Implementation::buffer(std::size_t size, const void* contents) {
-    if (size > facts.max_allocation)
-        throw Error(ErrorCode::unsupported, "a buffer of " + std::to_string(size) + " bytes is needed, device " +
-                                                facts.name + " allows " + std::to_string(facts.max_allocation));
-    cl_int status = CL_SUCCESS;
-    BufferHandle handle(clCreateBuffer(context, CL_MEM_READ_WRITE | (contents ? CL_MEM_COPY_HOST_PTR : 0), size,
-                                       const_cast<void*>(contents), &status));
-    check(status, "allocating device memory");
-    bytes += size;
-    return handle;
+std::size_t StrainLimiter::Implementation::required_scratch_bytes(
+    cl_device_id device, std::span<const std::shared_ptr<const Topology>> topologies, const Options& requested) {
+    return Implementation(nullptr, device, topologies, requested, device_facts(device), {}).memory.required();
 }
 
 void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {

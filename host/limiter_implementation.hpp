@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device_facts.hpp"
+#include "device_memory.hpp"
 #include "handles.hpp"
 #include "kernel_launch.hpp"
 #include "limiter_plan.hpp"
@@ -19,7 +20,10 @@ namespace apsl {
 struct StrainLimiter::Implementation {
     /// With the program of `built` where it fits; `built` may be null.
     Implementation(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
-                   const Options& requested, const Implementation* built = nullptr);
+                   const Options& requested, const BufferView& scratch, const Implementation* built = nullptr);
+    static std::size_t required_scratch_bytes(cl_device_id device,
+                                              std::span<const std::shared_ptr<const Topology>> cloths,
+                                              const Options& requested);
 
     cl_event enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,
                      std::span<const cl_event> wait_list);
@@ -30,10 +34,11 @@ struct StrainLimiter::Implementation {
     Options options;
     cl_context context;
     cl_device_id device;
+    std::uint32_t max_patch_vertices = 0;
     std::uint32_t patch_vertex_room = 0;  ///< vertices of a patch that the program has room for
     std::uint32_t cloth_count = 0, vertex_count = 0, triangle_count = 0, rest_area_count = 0, groups = 1;
     std::size_t largest_cloth = 0;  ///< triangles
-    std::size_t bytes = 0;
+    host::DeviceMemory memory;
     host::LaunchProfile profile;
     bool profiling = false;
 
@@ -54,10 +59,16 @@ struct StrainLimiter::Implementation {
     host::Kernel filter_in_one_group;
 
 private:
+    /// Options, and buffers from `scratch` (host/device_memory.hpp), no program yet.
+    Implementation(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
+                   const Options& requested, const host::DeviceFacts& facts, const BufferView& scratch);
+
     bool one_group() const { return options.execution == Execution::one_group; }
     bool assembled() const { return options.apply == Apply::assembled_csr; }
 
-    host::BufferHandle buffer(std::size_t size, const void* contents = nullptr);
+    host::BufferHandle buffer(std::size_t size, const void* contents = nullptr) {
+        return memory.allocate(size, contents);
+    }
     template <class Value>
     host::BufferHandle upload(const std::vector<Value>& contents) {
         return buffer(contents.size() * sizeof(Value), contents.data());

@@ -7,33 +7,41 @@
 namespace apsl {
 
 StrainLimiter::StrainLimiter(cl_context context, cl_device_id device,
-                             std::span<const std::shared_ptr<const Topology>> cloths, const Options& options)
-    : implementation_(std::make_unique<Implementation>(context, device, cloths, options)) {
+                             std::span<const std::shared_ptr<const Topology>> cloths, const Options& options,
+                             const BufferView& scratch)
+    : implementation_(std::make_unique<Implementation>(context, device, cloths, options, scratch)) {
 }
 
 StrainLimiter::StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
-                             const Options& options)
-    : StrainLimiter(context, device, std::span(&cloth, 1), options) {
+                             const Options& options, const BufferView& scratch)
+    : StrainLimiter(context, device, std::span(&cloth, 1), options, scratch) {
 }
 
 StrainLimiter::~StrainLimiter() = default;
 StrainLimiter::StrainLimiter(StrainLimiter&&) noexcept = default;
 StrainLimiter& StrainLimiter::operator=(StrainLimiter&&) noexcept = default;
 
-void StrainLimiter::rebuild(std::span<const std::shared_ptr<const Topology>> cloths) {
+std::size_t StrainLimiter::required_scratch_bytes(cl_device_id device,
+                                                  std::span<const std::shared_ptr<const Topology>> cloths,
+                                                  const Options& options) {
+    return Implementation::required_scratch_bytes(device, cloths, options);
+}
+
+void StrainLimiter::rebuild(std::span<const std::shared_ptr<const Topology>> cloths, const BufferView& scratch) {
     const Implementation& built = *implementation_;
-    auto rebuilt = std::make_unique<Implementation>(built.context, built.device, cloths, built.options, &built);
+    auto rebuilt =
+        std::make_unique<Implementation>(built.context, built.device, cloths, built.options, scratch, &built);
     rebuilt->profiling = built.profiling;
     rebuilt->profile = std::move(implementation_->profile);
     implementation_ = std::move(rebuilt);
 }
 
-void StrainLimiter::rebuild(const std::shared_ptr<const Topology>& cloth) {
-    rebuild(std::span(&cloth, 1));
+void StrainLimiter::rebuild(const std::shared_ptr<const Topology>& cloth, const BufferView& scratch) {
+    rebuild(std::span(&cloth, 1), scratch);
 }
 
 std::size_t StrainLimiter::scratch_bytes() const noexcept {
-    return implementation_->bytes;
+    return implementation_->memory.bytes();
 }
 
 std::size_t StrainLimiter::cloth_count() const noexcept {

@@ -41,6 +41,10 @@ APSL_KERNEL void filter_in_one_group(
                   scratch);
     order_values(cloths[c], parameters[c].enabled, triangle_order, ordered_rest_areas, ordered_regularization,
                  rest_areas + rest_area_offset, regularization + regularization_offset);
+    if (get_local_id(0) == 0) {
+        stats->initial_max_area_change = 0.0f;
+        stats->initial_rms_area_change = 0.0f;
+    }
     float2 change = (float2)(0.0f);
     for (bool going_on = parameters[c].enabled; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
@@ -93,10 +97,6 @@ APSL_KERNEL void filter_in_one_group(
             if (solve.initial_residual > 0.0f)
                 worst_residual = fmax(worst_residual, sqrt(solve.residual / solve.initial_residual));
         }
-    }
-    if (!parameters[c].enabled && get_local_id(0) == 0) {
-        stats->initial_max_area_change = 0.0f;
-        stats->initial_rms_area_change = 0.0f;
     }
     broken = broken || bad_vertices > 0.0f;
     if (get_local_id(0) == 0) {

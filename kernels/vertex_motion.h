@@ -61,6 +61,8 @@ APSL_INLINE float3 load_velocity(__global const float* velocities, uint vertex) 
 APSL_INLINE float3 end_of_step(__global const float* positions, __global const float* velocities, uint vertex,
                                float time_step) {
 #if APSL_POSITIONS_ONLY
+    (void)velocities;
+    (void)time_step;
     return load_position(positions, vertex);
 #else
     return predicted_position(load_position(positions, vertex), load_velocity(velocities, vertex), time_step);

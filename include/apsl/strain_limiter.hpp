@@ -83,22 +83,32 @@ struct KernelTime {
 class APSL_API StrainLimiter {
 public:
     /// Compiles the kernels and uploads the adjacency of one or more cloths; the only place that waits.
+    /// `scratch`: a place in a buffer of the caller's, itself no sub-buffer, with required_scratch_bytes() from its
+    /// offset on, which is then all the device memory used; nobody else may write there while the limiter lives. Null:
+    /// the limiter allocates its own.
     /// Throws Error: invalid_argument (no cloths, options out of range), unsupported (the device lacks what the options
     /// ask for), kernel_build, opencl.
     StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
-                  const Options& options = {});
+                  const Options& options = {}, const BufferView& scratch = {});
     StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
-                  const Options& options = {});
+                  const Options& options = {}, const BufferView& scratch = {});
     ~StrainLimiter();
     StrainLimiter(StrainLimiter&&) noexcept;
     StrainLimiter& operator=(StrainLimiter&&) noexcept;
+
+    /// Bytes of `scratch` that a limiter for these cloths and options needs at any offset: what it holds, and the gaps
+    /// that the device's alignment of sub-buffers makes. Works through the topologies, on the host.
+    static std::size_t required_scratch_bytes(cl_device_id device,
+                                              std::span<const std::shared_ptr<const Topology>> cloths,
+                                              const Options& options = {});
 
     /// For other topologies, of as many cloths as there are now or another number: a tear, a garment put on. Options
     /// stay as resolved, and so does the compiled program, unless the new meshes' patches need more room than it has;
     /// device memory is allocated anew, and what was kept from call to call (pressures, raised α, statistics) is gone.
     /// Calls queued before complete undisturbed. Throws as the constructor does; the limiter then stays as it was.
-    void rebuild(std::span<const std::shared_ptr<const Topology>> cloths);
-    void rebuild(const std::shared_ptr<const Topology>& cloth);
+    /// `scratch` as in the constructor; it may not overlap the present one.
+    void rebuild(std::span<const std::shared_ptr<const Topology>> cloths, const BufferView& scratch = {});
+    void rebuild(const std::shared_ptr<const Topology>& cloth, const BufferView& scratch = {});
 
     /// Device memory this object holds, adjacency included.
     std::size_t scratch_bytes() const noexcept;

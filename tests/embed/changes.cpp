@@ -198,3 +198,38 @@ TEST_CASE("a rebuild for patches that the program has no room for compiles anoth
     limiter.rebuild(large.topology);
     CHECK(opencl_calls().builds == builds + 1);
 }
+
+TEST_CASE("a limiter in the caller's scratch memory allocates nothing, and gives the same bytes", "[embed]") {
+    const std::vector<MovingCloth> cloths{a_cloth(1), moving_cloth(tetrahedron(), 2)};
+    const std::vector<std::shared_ptr<const Topology>> topologies{cloths[0].topology, cloths[1].topology};
+    for (const Options& options : variants)
+        for (const std::size_t offset : {std::size_t{0}, std::size_t{20}}) {
+            CAPTURE(static_cast<int>(options.apply), static_cast<int>(options.execution), offset);
+            StrainLimiter own(device().context, device().id, topologies, options);
+            const std::size_t needed = StrainLimiter::required_scratch_bytes(device().id, topologies, options);
+            CHECK(needed >= own.scratch_bytes());
+            cl_int status = CL_SUCCESS;
+            std::vector<unsigned char> poisoned(offset + needed + 64, 0xFF);
+            const Owned<cl_mem> scratch(clCreateBuffer(device().context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR,
+                                                       poisoned.size(), poisoned.data(), &status),
+                                        clReleaseMemObject);
+            require_success(status, "clCreateBuffer");
+            const int allocations = opencl_calls().allocations;
+            StrainLimiter limiter(device().context, device().id, topologies, options, {scratch.get(), offset});
+            CHECK(opencl_calls().allocations == allocations);
+            CHECK(limiter.scratch_bytes() == own.scratch_bytes());
+            check_same(outcome(limiter, cloths, {&few, 1}), outcome(own, cloths, {&few, 1}));
+
+            const Owned<cl_command_queue> queue = in_order_queue();
+            std::vector<unsigned char> after(poisoned.size());
+            require_success(clEnqueueReadBuffer(queue.get(), scratch.get(), CL_TRUE, 0, after.size(), after.data(), 0,
+                                                nullptr, nullptr),
+                            "clEnqueueReadBuffer");
+            for (std::size_t n = 0; n < after.size(); ++n)
+                if ((n < offset || n >= offset + needed) && after[n] != 0xFF) FAIL("byte " << n << " was written");
+
+            CHECK_THROWS_WITH(
+                StrainLimiter(device().context, device().id, topologies, options, {scratch.get(), needed / 2}),
+                Catch::StartsWith("scratch holds"));
+        }
+}

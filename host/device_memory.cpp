@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "device_memory.hpp"
+
+#include "opencl_error.hpp"
+
+#include <apsl/error.hpp>
+
+namespace apsl::host {
+namespace {
+
+std::size_t round_up(std::size_t size, std::size_t alignment) {
+    return (size + alignment - 1) / alignment * alignment;
+}
+
+std::size_t sub_buffer_alignment(cl_device_id device) {
+    cl_uint bits = 0;
+    check(clGetDeviceInfo(device, CL_DEVICE_MEM_BASE_ADDR_ALIGN, sizeof bits, &bits, nullptr),
+          "asking the device for its alignment");
+    return bits / 8;
+}
+
+}  // namespace
+
+DeviceMemory::DeviceMemory(cl_context context, cl_device_id device, const DeviceFacts& facts, const BufferView& scratch)
+    : context_(context), device_(device), facts_(facts), scratch_(scratch), alignment_(sub_buffer_alignment(device)) {
+}
+
+BufferHandle DeviceMemory::allocate(std::size_t size, const void* contents) {
+    if (size > facts_.max_allocation)
+        throw Error(ErrorCode::unsupported, "a buffer of " + std::to_string(size) + " bytes is needed, device " +
+                                                facts_.name + " allows " + std::to_string(facts_.max_allocation));
+    BufferHandle handle;
+    if (scratch_.buffer) {
+        handle = cut(size, contents);
+    } else if (context_) {
+        cl_int status = CL_SUCCESS;
+        handle = BufferHandle(clCreateBuffer(context_, CL_MEM_READ_WRITE | (contents ? CL_MEM_COPY_HOST_PTR : 0), size,
+                                             const_cast<void*>(contents), &status));
+        check(status, "allocating device memory");
+    }
+    bytes_ += size;
+    aligned_ += round_up(size, alignment_);
+    return handle;
+}
+
+BufferHandle DeviceMemory::cut(std::size_t size, const void* contents) {
+    std::size_t there = 0;
+    check(clGetMemObjectInfo(scratch_.buffer, CL_MEM_SIZE, sizeof there, &there, nullptr),
+          "asking the scratch memory for its size");
+    const cl_buffer_region region{round_up(scratch_.offset, alignment_) + aligned_, size};
+    if (scratch_.offset > there || region.origin > there || there - region.origin < size)
+        throw Error(ErrorCode::invalid_argument, "scratch holds " + std::to_string(there) + " bytes with offset " +
+                                                     std::to_string(scratch_.offset) +
+                                                     ", expected required_scratch_bytes() from there on");
+    cl_int status = CL_SUCCESS;
+    BufferHandle handle(
+        clCreateSubBuffer(scratch_.buffer, CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &status));
+    check(status, "cutting the scratch memory");
+    if (contents) {
+        Handle<cl_command_queue, clReleaseCommandQueue> queue(clCreateCommandQueue(context_, device_, 0, &status));
+        check(status, "creating a queue for the upload");
+        check(clEnqueueWriteBuffer(queue.get(), handle.get(), CL_TRUE, 0, size, contents, 0, nullptr, nullptr),
+              "uploading to the scratch memory");
+    }
+    return handle;
+}
+
+}  // namespace apsl::host

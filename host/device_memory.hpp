@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "device_facts.hpp"
+#include "handles.hpp"
+
+#include <apsl/strain_limiter.hpp>
+
+#include <cstddef>
+
+namespace apsl::host {
+
+/// Where a limiter's buffers come from: allocated one by one, cut from a place of the caller's, or only counted.
+class DeviceMemory {
+public:
+    /// `scratch` with a null buffer: allocated. `context` null: only counted, as if cut from a place of the caller's.
+    DeviceMemory(cl_context context, cl_device_id device, const DeviceFacts& facts, const BufferView& scratch);
+
+    /// `contents` may be null, and is copied before this returns. Throws Error: unsupported where the device has no
+    /// buffer of that size, invalid_argument where the caller's place is too small, opencl.
+    BufferHandle allocate(std::size_t size, const void* contents);
+    /// Of all buffers so far, without gaps.
+    std::size_t bytes() const { return bytes_; }
+    /// Likewise, cut from a place at any offset.
+    std::size_t required() const { return aligned_ + alignment_; }
+
+private:
+    BufferHandle cut(std::size_t size, const void* contents);
+
+    cl_context context_;
+    cl_device_id device_;
+    DeviceFacts facts_;
+    BufferView scratch_;
+    std::size_t alignment_;    // of a sub-buffer, bytes
+    std::size_t aligned_ = 0;  // bytes of all buffers, each rounded up
+    std::size_t bytes_ = 0;
+};
+
+}  // namespace apsl::host
