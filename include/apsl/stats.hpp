@@ -19,7 +19,7 @@ struct Stats {
     float residual;              ///< greatest ‖r‖ / ‖b‖ at the end of a solve, norm as in Parameters::tolerance
     float max_area_change;       ///< max |A − A⁰| / A⁰ after the last sub-step
     float rms_area_change;       ///< root of the mean of its squares, over triangles with A⁰ > 0
-    Status status;
+    Status status;               ///< how the call ended for this cloth
 };
 static_assert(sizeof(Stats) == 24);
 
