@@ -11,7 +11,7 @@ shared=${SHARED_BUILD:-build/debian/shared}
 static=${STATIC_BUILD:-build/debian/static}
 mkdir -p "$out"
 
-common=(-G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DAPSL_BUILD_TESTS=OFF -DAPSL_BUILD_COMPARE=OFF)
+common=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DAPSL_BUILD_TESTS=OFF -DAPSL_BUILD_COMPARE=OFF)
 if [[ -z "${SHARED_BUILD:-}" ]]; then
   cmake -S . -B "$shared" "${common[@]}" -DBUILD_SHARED_LIBS=ON -DAPSL_BUILD_PROGRAM=$program -DAPSL_BUILD_REFERENCE=$program
   cmake --build "$shared"
@@ -22,7 +22,7 @@ if [[ -z "${STATIC_BUILD:-}" ]]; then
 fi
 shared=$(realpath "$shared") static=$(realpath "$static") out=$(realpath "$out")
 rm -f "$out"/*.deb
-(umask 022; cd "$shared" && cpack -G DEB -B "$out/cpack" -D "CPACK_INSTALL_CMAKE_PROJECTS=$shared;apsl;ALL;/;$static;apsl;development;/")
+(umask 022; cd "$shared" && cpack -G DEB -B "$out/cpack" -D "CPACK_INSTALL_CMAKE_PROJECTS=$shared;apsl;ALL;/;$static;apsl;ALL;/")
 mv "$out"/cpack/*.deb "$out/"
 rm -rf "$out/cpack"
 ls "$out"/*.deb

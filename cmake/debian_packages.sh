@@ -15,6 +15,8 @@ packages=(
 if [[ "${1:-}" == "--tests" ]]; then
   packages+=(
     catch2 libbenchmark-dev libviennacl-dev python3-jsonschema oclgrind git
+    # the library as a package: HTML documentation, binary interface, pkg-config, Debian packages
+    doxygen abigail-tools binutils pkg-config file lintian
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
   )
