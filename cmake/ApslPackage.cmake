@@ -1,5 +1,5 @@
 # Debian packages by CPack: the shared library, what embedding programs need, and the program with its scenes.
-# cmake/debian_package.sh makes them.
+# cmake/make_debs.sh makes them.
 find_program(DPKG_EXECUTABLE dpkg)
 find_program(GZIP_EXECUTABLE gzip)
 if(NOT DPKG_EXECUTABLE OR NOT GZIP_EXECUTABLE)

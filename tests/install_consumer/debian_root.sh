@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Makes the Debian packages, installs them in a fresh Debian 12 (debootstrap, minbase, from this machine's mirror) with
 # nothing but what they depend on, and there builds and runs the consumers and the program. As root; a few minutes.
-# Arguments and environment are those of cmake/debian_package.sh: --libraries leaves out the program.
+# Arguments and environment are those of cmake/make_debs.sh: --libraries leaves out the program.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 [[ "$(id -u)" -eq 0 ]] || { echo "error: debootstrap and chroot need root" >&2; exit 1; }
-command -v debootstrap >/dev/null || { echo "error: no debootstrap found, expected the package of that name" >&2; exit 1; }
+cmake/debian_packages.sh --tests
 
 packages=${OUT:-build/debian}
-cmake/debian_package.sh "$@"
+cmake/make_debs.sh "$@"
 
 root=$(mktemp -d)
 clean_up() {

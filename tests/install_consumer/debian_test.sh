@@ -13,7 +13,7 @@ fail() {
   exit 1
 }
 
-OUT="$work/packages" SHARED_BUILD=$shared STATIC_BUILD=$static "$here/../../cmake/debian_package.sh" --libraries
+OUT="$work/packages" SHARED_BUILD=$shared STATIC_BUILD=$static "$here/../../cmake/make_debs.sh" --libraries
 runtime=$(ls "$work"/packages/libapsl[0-9]*.deb)
 development=$(ls "$work"/packages/libapsl-dev_*.deb)
 

@@ -4,6 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+cmake/debian_packages.sh
 program=ON
 [[ "${1:-}" == "--libraries" ]] && program=OFF
 out=${OUT:-build/debian}
@@ -17,7 +18,7 @@ if [[ -z "${SHARED_BUILD:-}" ]]; then
   cmake --build "$shared"
 fi
 if [[ -z "${STATIC_BUILD:-}" ]]; then
-  cmake -S . -B "$static" "${common[@]}" -DAPSL_BUILD_PROGRAM=OFF -DAPSL_BUILD_REFERENCE=OFF
+  cmake -S . -B "$static" "${common[@]}" -DAPSL_BUILD_PROGRAM=OFF -DAPSL_BUILD_REFERENCE=$program
   cmake --build "$static"
 fi
 shared=$(realpath "$shared") static=$(realpath "$static") out=$(realpath "$out")
