@@ -12,7 +12,7 @@ cmake/make_debs.sh "$@"
 
 root=$(mktemp -d)
 clean_up() {
-  for mounted in proc dev; do
+  for mounted in proc sys dev; do
     if mountpoint -q "$root/$mounted"; then umount "$root/$mounted"; fi
   done
   rm -rf --one-file-system "$root"
@@ -21,8 +21,9 @@ trap clean_up EXIT
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Codename: bookworm' | head -n 1)
 debootstrap --variant=minbase bookworm "$root" "$mirror"
 
-# OpenCL devices ask /proc and /dev what processors there are.
+# pocl asks these what processors and memory there are.
 mount -t proc proc "$root/proc"
+mount --bind -o ro /sys "$root/sys"
 mount --bind /dev "$root/dev"
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 for settings in /etc/apt/apt.conf.d/*; do
