@@ -11,6 +11,7 @@ packages=${OUT:-build/debian}
 cmake/make_debs.sh "$@"
 
 root=$(mktemp -d)
+chmod 755 "$root"
 clean_up() {
   for mounted in proc sys dev; do
     if mountpoint -q "$root/$mounted"; then umount "$root/$mounted"; fi
