@@ -5,6 +5,8 @@ set -euo pipefail
 packages=(
   # the library
   build-essential cmake ninja-build ocl-icd-opencl-dev opencl-c-headers
+  # Debian packages of it
+  file gzip
   # an OpenCL device for machines without a GPU
   pocl-opencl-icd
   # the reference and the program
@@ -15,6 +17,8 @@ packages=(
 if [[ "${1:-}" == "--tests" ]]; then
   packages+=(
     catch2 libbenchmark-dev libviennacl-dev python3-jsonschema oclgrind git
+    # the library as a package: HTML documentation, binary interface, pkg-config, Debian packages, a clean system
+    doxygen abigail-tools binutils pkg-config lintian debootstrap
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
   )

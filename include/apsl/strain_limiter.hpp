@@ -20,15 +20,15 @@ namespace apsl {
 
 /// What is compiled into the kernels of a StrainLimiter.
 struct Options {
-    Matrix matrix = Matrix::consistent;
-    Apply apply = Apply::matrix_free;
+    Matrix matrix = Matrix::consistent;  ///< what couples the pressures
+    Apply apply = Apply::matrix_free;    ///< how it is applied
     /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU kept_pressures 0.
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;
     /// Floats from one vertex to the next in positions and in velocities, ≥ 3.
     std::uint32_t position_stride = 3;
-    std::uint32_t velocity_stride = 3;
+    std::uint32_t velocity_stride = 3;  ///< likewise
     /// A regularization buffer is given with every call.
     bool regularization_per_triangle = false;
     /// The pressures of so many sub-steps of a call (4 B a triangle each; later sub-steps share the last) are kept, and
@@ -40,8 +40,8 @@ struct Options {
 
 /// A place in a caller's buffer. The element stride is fixed in Options.
 struct BufferView {
-    cl_mem buffer = nullptr;
-    std::size_t offset = 0;  ///< bytes, a multiple of 4
+    cl_mem buffer = nullptr;  ///< the caller's; must live until the calls that use it complete
+    std::size_t offset = 0;   ///< bytes, a multiple of 4
 };
 
 /// 32-bit floats in the caller's buffers. With several cloths their vertices and triangles follow one another in the
@@ -56,9 +56,9 @@ struct Buffers {
 
 /// One kernel's share of the profiled commands (see StrainLimiter::profile).
 struct KernelTime {
-    std::string name;
-    std::int64_t launches = 0;
-    double seconds = 0.0;  ///< on the device, from the profiling events
+    std::string name;           ///< of the kernel, as in kernels/
+    std::int64_t launches = 0;  ///< since the last call of profile()
+    double seconds = 0.0;       ///< on the device, from the profiling events
 };
 
 /// The filter of Algorithm 1 on an OpenCL device, inside the caller's context, queue and buffers.
@@ -73,14 +73,16 @@ public:
     /// ask for), kernel_build, opencl.
     StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
                   const Options& options = {});
+    /// The same for one cloth.
     StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
                   const Options& options = {});
     ~StrainLimiter();
-    StrainLimiter(StrainLimiter&&) noexcept;
-    StrainLimiter& operator=(StrainLimiter&&) noexcept;
+    StrainLimiter(StrainLimiter&&) noexcept;             ///< what was moved from may only be assigned to or destroyed
+    StrainLimiter& operator=(StrainLimiter&&) noexcept;  ///< likewise
 
     /// Device memory this object holds, adjacency included.
     std::size_t scratch_bytes() const noexcept;
+    /// The cloths it was made for.
     std::size_t cloth_count() const noexcept;
     /// The options as resolved for the device (no zeros left).
     const Options& options() const noexcept;
@@ -90,6 +92,7 @@ public:
     /// Throws Error(invalid_argument) before anything is queued, Error(opencl) where a call fails.
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers,
                                    std::span<const Parameters> parameters, std::span<const cl_event> wait_list = {});
+    /// The same with one set of parameters for all cloths.
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers, const Parameters& parameters,
                                    std::span<const cl_event> wait_list = {});
 
