@@ -16,6 +16,7 @@
 #include <CLI/CLI.hpp>
 #include <apsl/strain_limiter.hpp>
 #include <iostream>
+#include <numeric>
 
 namespace {
 
@@ -120,21 +121,19 @@ private:
         for (float& mass : inverse_masses) mass = 1.0f / mass;
         std::fill_n(inverse_masses.begin(), arguments_.grid, 0.0f);  // pins: the first row
 
-        // Stretch springs along the edges, bending springs between vertices two edges apart, listed for both ends.
-        std::vector<std::vector<Spring>> of_vertex(topology.vertex_count());
-        const auto join = [&](std::span<const apsl::VertexPair> pairs, float stiffness) {
-            for (const auto& [a, b] : pairs) {
-                of_vertex[a].push_back({b, distance(rest, a, b), stiffness});
-                of_vertex[b].push_back({a, distance(rest, a, b), stiffness});
-            }
-        };
-        join(topology.edges(), stretch);
-        join(topology.second_ring_pairs(), bending);
-        std::vector<cl_uint> offsets{0};
-        std::vector<Spring> springs;
-        for (const std::vector<Spring>& list : of_vertex) {
-            springs.insert(springs.end(), list.begin(), list.end());
-            offsets.push_back(static_cast<cl_uint>(springs.size()));
+        // Stretch springs along the edges, then bending springs between vertices two edges apart; listed for both ends.
+        std::vector<apsl::VertexPair> pairs(topology.edges().begin(), topology.edges().end());
+        for (const apsl::VertexPair& pair : topology.second_ring_pairs()) pairs.push_back(pair);
+        std::vector<cl_uint> offsets(topology.vertex_count() + 1);
+        for (const auto& [a, b] : pairs) ++offsets[a + 1], ++offsets[b + 1];
+        std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+        std::vector<cl_uint> next(offsets);
+        std::vector<Spring> springs(offsets.back());
+        for (std::size_t n = 0; n < pairs.size(); ++n) {
+            const auto [a, b] = pairs[n];
+            const float stiffness = n < topology.edges().size() ? stretch : bending;
+            springs[next[a]++] = {b, distance(rest, a, b), stiffness};
+            springs[next[b]++] = {a, distance(rest, a, b), stiffness};
         }
 
         const auto upload = [&](const auto& values) {
