@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What moves the cloth before and after apsl limits its strain. Until `advance`, positions are those of the start of
-// the step and everything happens to the velocities: v is what takes x to x + time_step v, as the limiter reads it.
-// Vertices are packed, three floats each; inverse mass 0 is a pin, which stands still.
+// the step and everything happens to the velocities, which the limiter reads as x + Δt v. Inverse mass 0 is a pin.
 
 typedef struct {
     uint other;         // the vertex at the other end

@@ -30,9 +30,8 @@ constexpr cl_float4 sphere{{0.0f, -0.35f, 0.0f, 0.3f}};      // m: centre, radiu
 constexpr float friction = 0.4f;
 
 struct Arguments {
-    std::uint32_t grid = 65;
+    std::uint32_t grid = 65, device = 0;
     int frames = 90;
-    std::size_t device = 0;
     bool out_of_order = false, bench = false;
     std::string trace, out;
 };
@@ -49,7 +48,11 @@ public:
           const std::shared_ptr<const apsl::Topology>& topology, const std::vector<float>& rest)
         : arguments_(arguments), limiter_(context(), device(), topology) {
         if (arguments.bench)
-            parameters_ = {.time_step = time_step, .sub_steps = 10, .tolerance = 0.0f, .max_iterations = 3};
+            parameters_ = {.time_step = time_step,
+                           .regularization = 1.2f,
+                           .sub_steps = 10,
+                           .tolerance = 0.0f,
+                           .max_iterations = 3};
         queue_ = cl::CommandQueue(context, device,
                                   (arguments.out_of_order ? CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE : 0) |
                                       (arguments.trace.empty() ? 0 : CL_QUEUE_PROFILING_ENABLE));
@@ -174,7 +177,7 @@ private:
     cl::Kernel predict_, relax_, relax_back_, advance_;
     cl::NDRange padded_vertices_;
     apsl::StrainLimiter limiter_;
-    apsl::Parameters parameters_{.time_step = time_step, .regularization = 1.2f, .sub_steps = 4};
+    apsl::Parameters parameters_{.time_step = time_step, .sub_steps = 4, .first_regularization = 1.02f};
     std::vector<cl::Event> before_;  // empty on an in-order queue
     int frame_ = 0;
     Trace trace_;
