@@ -3,8 +3,9 @@
 # with the same settings (10 sub-steps of exactly 3 CG iterations), and prints for each round what a call of the limiter
 # takes: in the pipeline (from the end of the stage before to the end of the limiter's last command, profiling events),
 # alone (wall time from the call to its end, the wait included), and the sum of its kernels alone (profiling events,
-# without what lies between them). Also the host's waits within frames: the host_waits of
-# tests/embed/embedded_example_test.py, counted anew at each size.
+# without what lies between them). A small cloth's call is one launch, and alone it also pays for sending it off and for
+# waking up; there the kernels are what to compare with. Also the host's waits within frames, counted as
+# tests/embed/embedded_example_test.py does.
 #     bench/embedded.sh [ROUNDS, 5 where not given]
 # About two minutes on two quiet cores; on a busy machine the ratios mean little.
 set -euo pipefail

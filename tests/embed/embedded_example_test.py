@@ -181,6 +181,18 @@ class TraceFile(unittest.TestCase):
             shortest = min(event["dur"] for event in host)
             self.assertLess(host[-1]["ts"] + host[-1]["dur"], device[0]["ts"] + shortest)
 
+    def test_is_drawn(self):
+        script = source.parent / "pictures/draw_trace.py"
+        folder = Path(self.temporary.name)
+        (folder / "drawn.json").write_text(json.dumps(self.traces[program, ()]))
+        for trace, frame, code, message in (("drawn.json", "1", 0, ""), ("drawn.json", "3", 2, "holds frames 0 to 2"),
+                                            ("none.json", "1", 2, "cannot be read")):
+            done = subprocess.run([script, folder / trace, "--frame", frame, "--out", folder / "trace.png"],
+                                  capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(message, done.stderr)
+        self.assertTrue((folder / "trace.png").read_bytes().startswith(b"\x89PNG"))
+
 
 class Source(unittest.TestCase):
     def test_pipeline_is_short_enough_to_read(self):
