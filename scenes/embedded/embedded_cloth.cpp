@@ -28,6 +28,8 @@ constexpr float density = 0.2f;                              // kg/m²
 constexpr float stretch = 0.2f, bending = 0.02f;             // see Spring in cloth_step.cl
 constexpr cl_float4 sphere{{0.0f, -0.35f, 0.0f, 0.3f}};      // m: centre, radius
 constexpr float friction = 0.4f;
+constexpr apsl::Parameters bench_parameters{
+    .time_step = time_step, .regularization = 1.2f, .sub_steps = 10, .tolerance = 0.0f, .max_iterations = 3};
 
 struct Arguments {
     std::uint32_t grid = 65, device = 0;
@@ -47,12 +49,7 @@ public:
     Cloth(const cl::Context& context, const cl::Device& device, const Arguments& arguments,
           const std::shared_ptr<const apsl::Topology>& topology, const std::vector<float>& rest)
         : arguments_(arguments), limiter_(context(), device(), topology) {
-        if (arguments.bench)
-            parameters_ = {.time_step = time_step,
-                           .regularization = 1.2f,
-                           .sub_steps = 10,
-                           .tolerance = 0.0f,
-                           .max_iterations = 3};
+        if (arguments.bench) parameters_ = bench_parameters;
         queue_ = cl::CommandQueue(context, device,
                                   (arguments.out_of_order ? CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE : 0) |
                                       (arguments.trace.empty() ? 0 : CL_QUEUE_PROFILING_ENABLE));
@@ -63,7 +60,7 @@ public:
     void frame() {
         for (int step = 0; step < steps_per_frame; ++step) {
             launch("predict", predict_);
-            launch("relax_springs", relax_);
+            launch("relax_springs", relax_);  // from velocities_ to relaxed_
             launch("relax_springs", relax_back_);
             limit_strain();
             launch("advance", advance_);
@@ -232,6 +229,8 @@ int main(int argc, char** argv) {
         return 0;
     } catch (const cl::BuildError& error) {
         for (const auto& [device, log] : error.getBuildLog()) std::cerr << log << '\n';
+    } catch (const cl::Error& error) {
+        std::cerr << "error: OpenCL: " << error.what() << " failed with code " << error.err() << '\n';
     } catch (const std::exception& error) {
         std::cerr << "error: " << error.what() << '\n';
     }
