@@ -10,7 +10,7 @@ packages=(
   # an OpenCL device for machines without a GPU
   pocl-opencl-icd
   # the reference and the program
-  libeigen3-dev libcli11-dev nlohmann-json3-dev libtinyobjloader-dev libassimp-dev
+  libeigen3-dev libcli11-dev nlohmann-json3-dev libtinyobjloader-dev libassimp-dev opencl-clhpp-headers
   # pictures and charts
   python3 python3-vtk9 python3-matplotlib python3-pil xvfb xauth
 )

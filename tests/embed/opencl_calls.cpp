@@ -7,11 +7,18 @@
 namespace {
 
 apsl::test::OpenClCalls calls;
+apsl::test::CallHooks hooks;
 
 /// The ICD loader's own definition of the function.
 template <class Function>
 Function* real(const char* name) {
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+void count_blocking(cl_bool blocking) {
+    if (!blocking) return;
+    if (hooks.before_wait) hooks.before_wait();
+    ++calls.blocking_calls;
 }
 
 }  // namespace
@@ -20,20 +27,32 @@ apsl::test::OpenClCalls apsl::test::opencl_calls() {
     return calls;
 }
 
+void apsl::test::set_call_hooks(const CallHooks& wanted) {
+    hooks = wanted;
+}
+
 #define SHOWN __attribute__((visibility("default")))
 
 extern "C" {
 
 SHOWN cl_int clFinish(cl_command_queue queue) {
     static auto* const next = real<decltype(clFinish)>("clFinish");
+    if (hooks.before_wait) hooks.before_wait();
     ++calls.host_waits;
     return next(queue);
 }
 
 SHOWN cl_int clWaitForEvents(cl_uint count, const cl_event* events) {
     static auto* const next = real<decltype(clWaitForEvents)>("clWaitForEvents");
+    if (hooks.before_wait) hooks.before_wait();
     ++calls.host_waits;
     return next(count, events);
+}
+
+SHOWN cl_int clGetEventInfo(cl_event event, cl_event_info what, size_t size, void* value, size_t* needed) {
+    static auto* const next = real<decltype(clGetEventInfo)>("clGetEventInfo");
+    ++calls.polls;
+    return next(event, what, size, value, needed);
 }
 
 SHOWN cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* status) {
@@ -60,7 +79,7 @@ SHOWN cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool 
                                  void* to, cl_uint count, const cl_event* waits, cl_event* event) {
     static auto* const next = real<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
     ++calls.reads;
-    calls.blocking_calls += blocking ? 1 : 0;
+    count_blocking(blocking);
     return next(queue, buffer, blocking, offset, size, to, count, waits, event);
 }
 
@@ -69,7 +88,7 @@ SHOWN void* clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool bl
                                cl_int* status) {
     static auto* const next = real<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer");
     ++calls.reads;
-    calls.blocking_calls += blocking ? 1 : 0;
+    count_blocking(blocking);
     return next(queue, buffer, blocking, flags, offset, size, count, waits, event, status);
 }
 
@@ -77,7 +96,7 @@ SHOWN cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool
                                   const void* from, cl_uint count, const cl_event* waits, cl_event* event) {
     static auto* const next = real<decltype(clEnqueueWriteBuffer)>("clEnqueueWriteBuffer");
     ++calls.commands;
-    calls.blocking_calls += blocking ? 1 : 0;
+    count_blocking(blocking);
     return next(queue, buffer, blocking, offset, size, from, count, waits, event);
 }
 
@@ -92,6 +111,7 @@ SHOWN cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl
                                     const size_t* global, const size_t* local, cl_uint count, const cl_event* waits,
                                     cl_event* event) {
     static auto* const next = real<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
+    if (hooks.before_kernel) hooks.before_kernel(queue);
     ++calls.commands;
     return next(queue, kernel, dimensions, offset, global, local, count, waits, event);
 }
