@@ -15,6 +15,8 @@ packages=(
 if [[ "${1:-}" == "--tests" ]]; then
   packages+=(
     catch2 libbenchmark-dev libviennacl-dev python3-jsonschema oclgrind git
+    # the Python module in a virtual environment
+    python3-dev python3-venv
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
   )
