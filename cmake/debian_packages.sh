@@ -21,6 +21,10 @@ if [[ "${1:-}" == "--tests" ]]; then
     clang-19 clang-format-19 rocm-device-libs
   )
 fi
+if [[ "${1:-}" == "--blender" ]]; then
+  # what Blender as a Python module (tests/scenes/viewers/blender.sh) finds on any desktop
+  packages+=(python3-venv libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libxrender1)
+fi
 
 missing=()
 for package in "${packages[@]}"; do
