@@ -20,5 +20,8 @@ def rest_areas(positions: npt.ArrayLike, triangles: npt.ArrayLike) -> npt.NDArra
 
 def area_change(positions: npt.ArrayLike, triangles: npt.ArrayLike,
                 rest_areas: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """|A − A⁰| / A⁰ of each triangle, [T], 0 where A⁰ ≤ 0. positions: m, [V, 3]. triangles: [T, 3]. rest_areas: m², [T]."""
+    """|A − A⁰| / A⁰ of each triangle, [T], 0 where A⁰ ≤ 0.
+
+    positions: m, [V, 3]. triangles: [T, 3]. rest_areas: m², [T].
+    """
     return _core.area_change(positions, triangles, rest_areas)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs Blender as a Python module below build/ (a download of about 350 MB; Python 3.11, as Debian 12 has) and runs
+# Installs Blender as a Python module below build/ (a download of about 370 MB; Python 3.11, as Debian 12 has) and runs
 # its test. Once it is there, CTest runs the test too.
 # Usage: blender.sh [APSL_PROGRAM]
 set -euo pipefail

@@ -64,8 +64,8 @@ class InBlender(unittest.TestCase):
 
     def test_a_saved_file_needs_no_script(self):
         saved = self.folder / "cloth.blend"
-        result = subprocess.run([sys.executable, script, self.folder / "run", "--save", saved], capture_output=True,
-                                text=True, timeout=100)
+        arguments = ["--background", "--", self.folder / "run", "--save", saved]  # as Blender passes them on
+        result = subprocess.run([sys.executable, script, *arguments], capture_output=True, text=True, timeout=100)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         bpy.ops.wm.open_mainfile(filepath=str(saved))
         self.assertEqual([entry.name for entry in bpy.data.objects], ["cloth"])
