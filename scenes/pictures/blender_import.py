@@ -4,7 +4,7 @@
 
 Inside Blender:      blender --python blender_import.py -- DIR [--save FILE.blend] [--render FILE.png --frame N]
 With the module bpy: python blender_import.py DIR --save FILE.blend
-Frame numbers are the report's. Needs Blender 4.0 or later.
+Frame numbers are the report's. Needs Blender 3.4 or later.
 """
 import argparse
 import math
@@ -49,8 +49,12 @@ def store_rest_areas(mesh):
 def area_change_nodes():
     """Geometry nodes that store |A − A⁰| / A⁰ on the faces as they are in the frame shown."""
     group = bpy.data.node_groups.new("apsl area change", "GeometryNodeTree")
-    for direction in ("INPUT", "OUTPUT"):
-        group.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+    if hasattr(group, "interface"):
+        for direction in ("INPUT", "OUTPUT"):
+            group.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+    else:  # before Blender 4
+        for sockets in (group.inputs, group.outputs):
+            sockets.new("NodeSocketGeometry", "Geometry")
 
     def node(kind, **settings):
         made = group.nodes.new(kind)
@@ -111,7 +115,7 @@ def set_time(scene, folder):
     scene.frame_set(0)
 
 
-def render(cloth, frame, picture, size=(640, 480), samples=48):
+def render(cloth, frame, picture, size=(640, 480), samples=64):
     """A picture of one frame by Cycles on the processor, from the front and a little above."""
     scene = bpy.context.scene
     scene.frame_set(frame)
@@ -134,6 +138,7 @@ def render(cloth, frame, picture, size=(640, 480), samples=48):
     scene.camera, scene.world = camera, world
     scene.render.engine = "CYCLES"
     scene.cycles.device, scene.cycles.samples = "CPU", samples
+    scene.cycles.use_denoising = False  # Debian's Blender is built without
     scene.view_settings.view_transform, scene.render.dither_intensity = "Standard", 0  # red stays red
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.resolution_percentage = 100
