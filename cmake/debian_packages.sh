@@ -19,9 +19,15 @@ if [[ "${1:-}" == "--tests" ]]; then
     catch2 libbenchmark-dev libviennacl-dev python3-jsonschema oclgrind git
     # the library as a package: HTML documentation, binary interface, pkg-config, Debian packages, a clean system
     doxygen abigail-tools binutils pkg-config lintian debootstrap
+    # the Python module in a virtual environment
+    python3-dev python3-venv
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
   )
+fi
+if [[ "${1:-}" == "--blender" ]]; then
+  # what Blender as a Python module (tests/scenes/viewers/blender.sh) finds on any desktop
+  packages+=(python3-venv libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libxrender1)
 fi
 
 missing=()
