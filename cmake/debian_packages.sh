@@ -8,7 +8,7 @@ packages=(
   # an OpenCL device for machines without a GPU
   pocl-opencl-icd
   # the reference and the program
-  libeigen3-dev libcli11-dev nlohmann-json3-dev libtinyobjloader-dev libassimp-dev
+  libeigen3-dev libcli11-dev nlohmann-json3-dev
   # pictures and charts
   python3 python3-vtk9 python3-matplotlib python3-pil xvfb xauth
 )
@@ -17,6 +17,8 @@ if [[ "${1:-}" == "--tests" ]]; then
     catch2 libbenchmark-dev libviennacl-dev python3-jsonschema oclgrind git
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
+    # the fuzzers of the readers
+    libclang-rt-19-dev
   )
 fi
 
