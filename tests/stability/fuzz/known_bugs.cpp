@@ -36,3 +36,22 @@ TEST_CASE("area changes that overflow end as diverged, or with statistics that a
     const Filtered filtered = filter_on_device(cloth, many_groups, {.sub_steps = 0});
     CHECK((filtered.stats.status == Status::diverged || std::isfinite(filtered.stats.rms_area_change)));
 }
+
+TEST_CASE("tolerance 0: the reference ends with what it reached, not with 0/0", "[fuzz][!shouldfail]") {
+    const auto numbers = [](std::initializer_list<float> list) {
+        return std::vector<double>(list.begin(), list.end());
+    };
+    MovingCloth cloth;
+    const std::vector<Triangle> triangles{{0, 1, 2}, {0, 1, 3}};
+    cloth.topology = Topology::build(triangles, 4);
+    cloth.positions = numbers({999.999878f, 1000.00006f, 1000.00006f, 999.999756f, 1000.00024f, 1000.01001f,
+                               1000.01019f, 1000.00012f, 1000.00476f, 999.989929f, 1000.00018f, 1000.00488f});
+    cloth.velocities =
+        numbers({-0.320218384f, 0.337294281f, -0.543079495f, 0.188819155f, 0.0702051073f, -0.436275721f, -0.162103713f,
+                 -0.0190634187f, -0.3857283f, -0.443664461f, -0.292443216f, -0.538051426f});
+    cloth.inverse_masses = numbers({149781.547f, 0.0f, 0.0f, 306901.344f});
+    cloth.rest_areas = numbers({5.12702063e-05f, 4.88756377e-05f});
+    const Parameters parameters{
+        .time_step = 0.1f, .regularization = 1.2f, .sub_steps = 1, .tolerance = 0.0f, .max_iterations = 50};
+    CHECK(filter_with_reference(cloth, {}, parameters).stats.status != Status::diverged);
+}

@@ -61,7 +61,9 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
     const bool tame = options.matrix == Matrix::consistent && facts.smallest_alpha >= 1.01 &&
                       reach < 10.0 * facts.greatest_position && facts.max_change_error < 0.1;
     if (diverged && facts.ordinary_numbers && tame)
-        return broken("ordinary input diverged", {{"greatest area change before", facts.max_before}});
+        return broken(
+            parameters.tolerance > 0.0f ? "ordinary input diverged" : "ordinary input diverged at tolerance 0",
+            {{"greatest area change before", facts.max_before}});
     if (diverged) return {};
     const int most = parameters.max_iterations + (options.kept_pressures > 0 ? 1 : 0);
     if (stats.sub_steps < 0 || stats.sub_steps > parameters.sub_steps || stats.cg_iterations < 0 ||

@@ -62,7 +62,7 @@ TEST_CASE("a case follows from seed and number alone") {
 }
 
 TEST_CASE("shrinking a planted failure leaves little but what makes it fail") {
-    // Fails where a triangle of rest area over 0.004 hangs on a pinned vertex, in a call of two sub-steps or more.
+    // Fails where a triangle of rest area over 0.004 hangs on a pinned vertex, in a call of ten sub-steps.
     const auto fails = [](const FuzzCase& c) {
         for (const FuzzCall& call : c.calls)
             for (std::size_t n = 0; n < c.cloths.size(); ++n)
