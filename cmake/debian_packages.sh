@@ -10,7 +10,7 @@ packages=(
   # an OpenCL device for machines without a GPU
   pocl-opencl-icd
   # the reference and the program
-  libeigen3-dev libcli11-dev nlohmann-json3-dev libtinyobjloader-dev libassimp-dev opencl-clhpp-headers
+  libeigen3-dev libcli11-dev nlohmann-json3-dev opencl-clhpp-headers
   # pictures and charts
   python3 python3-vtk9 python3-matplotlib python3-pil xvfb xauth
 )
@@ -23,6 +23,8 @@ if [[ "${1:-}" == "--tests" ]]; then
     python3-dev python3-venv
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
+    # the fuzzers of the readers
+    libclang-rt-19-dev
   )
 fi
 if [[ "${1:-}" == "--blender" ]]; then

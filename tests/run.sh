@@ -9,3 +9,7 @@ git ls-files '*.cpp' '*.hpp' '*.h' '*.cl' | xargs -r clang-format-19 --dry-run -
 cmake --preset ci
 cmake --build --preset ci
 ctest --preset ci -j "$(nproc)"
+# The readers of scenes and meshes, each fuzzed for a while with clang's sanitizers.
+cmake --preset fuzz
+cmake --build --preset fuzz
+ctest --preset fuzz -j "$(nproc)"

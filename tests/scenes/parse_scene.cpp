@@ -244,3 +244,13 @@ TEST_CASE("a scene file that is missing or no JSON") {
     const std::string huge = folder.write("huge.json", R"({"mesh": {"grid": {}}, "density": 1e999})");
     CHECK_THAT(input_error_of([&] { read_scene(huge); }), Catch::StartsWith(huge + ": not valid JSON: "));
 }
+
+TEST_CASE("text nested too deep is refused, however deep") {
+    const std::string deep(1000000, '[');
+    const auto error = [](const std::string& text) {
+        return input_error_of([&] { parse_scene_text(text, "scene.json"); });
+    };
+    CHECK(error(deep) == "scene.json: nested more than 64 deep, expected a scene");
+    CHECK(error(std::string(64, '[') + std::string(64, ']')).empty());
+    CHECK_THAT(error("{\"mesh\":"), Catch::StartsWith("scene.json: not valid JSON: parse error at line 1"));
+}
