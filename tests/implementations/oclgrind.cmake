@@ -2,10 +2,9 @@
 # accesses out of bounds, wrong API calls and, with UNINITIALIZED, values that nobody wrote. Fails where it has anything to
 # say: Oclgrind itself exits with 0 whatever it finds.
 #
-# What UNINITIALIZED is not for, all of it Oclgrind 21.10's own: it crashes on a shuffle whose result is longer or shorter
-# than its operands (float4 to float8), and reports vectors that LLVM stores as undef and then fills component by
-# component, which is every kernel that includes kernels/lanes.h; and it takes what clEnqueueWriteBuffer wrote for
-# uninitialised, so kernel tests make a buffer anew instead (GuardedMemory::write).
+# What UNINITIALIZED is not for, all of it Oclgrind 21.10's own: it crashes on some vectors (a shuffle of float4 to float8
+# among others), and reports those that LLVM stores as undef and then fills component by component. And it takes what
+# clEnqueueWriteBuffer wrote for uninitialised: kernel tests make a buffer anew instead (GuardedMemory::write).
 file(REMOVE "${LOG}")
 set(ENV{OCL_ICD_VENDORS} "${OCLGRIND}")
 set(ENV{OCLGRIND_DATA_RACES} 1)
