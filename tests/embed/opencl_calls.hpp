@@ -7,6 +7,17 @@
 
 namespace apsl::test {
 
+/// References to OpenCL objects that this program holds: those it created or retained less those it released.
+struct OpenClReferences {
+    int queues = 0;
+    int buffers = 0;
+    int programs = 0;
+    int kernels = 0;
+    int events = 0;  ///< those that an enqueue handed out included
+
+    friend bool operator==(const OpenClReferences&, const OpenClReferences&) = default;
+};
+
 /// The program's OpenCL calls since it began. This program defines these entry points itself and hands each call on.
 struct OpenClCalls {
     int host_waits = 0;      ///< clFinish, clWaitForEvents
@@ -18,6 +29,7 @@ struct OpenClCalls {
     int commands = 0;        ///< kernels, fills, copies, writes, markers
     int builds = 0;          ///< clBuildProgram
     std::size_t allocated_bytes = 0;
+    OpenClReferences held;
 };
 
 OpenClCalls opencl_calls();
@@ -29,5 +41,9 @@ struct CallHooks {
 };
 
 void set_call_hooks(const CallHooks& hooks);
+
+/// The `number`-th call from now, from 1, that creates an object, builds or enqueues fails with CL_OUT_OF_RESOURCES,
+/// and is not handed on; those after it do as always. 0: none fails.
+void fail_opencl_call(int number);
 
 }  // namespace apsl::test
