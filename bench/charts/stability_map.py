@@ -12,8 +12,9 @@ from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, plai
 
 # Told apart by colour-blind eyes and in print by how dark they are.
 COLOURS = {"h": "#56B4E9", "i": "#F0E442", "w": "#E69F00", "d": "#222222", "t": "#bbbbbb"}
+TITLES = {"apsl_defaults": "Ours, the defaults", "apsl": "Ours, the paper's setting",
+          "apsl_printed": "Ours, matrix as printed"}
 SHORT = {"h": "held", "i": "inaccurate: above 10 %", "w": "worse than no limiter", "d": "diverged", "t": "not finished"}
-LEGEND_INCHES = 0.75
 
 
 def squares(axis, rows):
@@ -36,24 +37,31 @@ def dots(axis, rows, not_ok):
         axis.scatter(*zip(*points), s=5, color="#222222", linewidths=0)
 
 
-def legend(figure, documents):
-    used = set("".join(row for method in documents["methods"] for row in method["outcome"]))
+def legend(figure, document, place):
+    used = set("".join(row for method in document["methods"] for row in method["outcome"]))
     handles = [Patch(facecolor=COLOURS[letter], label=SHORT[letter]) for letter in COLOURS if letter in used]
-    share = LEGEND_INCHES / 2.0 / figure.get_figheight()
-    figure.get_layout_engine().set(rect=(0.0, share, 1.0, 1.0 - share))
-    figure.legend(handles=handles, loc="lower center", ncols=len(handles), fontsize=9)
+    figure.legend(handles=handles, loc=place, ncols=len(handles), fontsize=9)
 
 
-def value_label(value):
-    return f"1/{round(1.0 / value)}" if 0.0005 < value < 0.1 and abs(1.0 / value - round(1.0 / value)) < 1e-9 else plain(value)
+def labels(axis):
+    """Time steps as 1/60, the rest as a person writes it."""
+    if axis["label"].startswith("time step"):
+        return [f"1/{round(1.0 / value)}" for value in axis["values"]]
+    return [plain(value) if value >= 1000 else f"{value:g}" for value in axis["values"]]
+
+
+def title_of(method):
+    if method["name"] == "none":
+        return "No limiter"
+    return TITLES.get(method["name"], method["title"])
 
 
 def draw_map(document):
-    methods, columns = document["methods"], 5
+    methods = document["methods"]
+    columns = min(len(methods), 5)
     rows = -(-len(methods) // columns)
-    figure, axes = new_chart(columns, rows, width=11.0, height=0.6 + LEGEND_INCHES + 1.9 * rows, sharex=True, sharey=True,
-                             squeeze=False)
-    times = document["x"]["label"].startswith("time step")
+    figure, axes = new_chart(columns, rows, width=1.2 + 2.0 * columns, height=1.2 + 1.9 * rows, sharex=True,
+                             sharey=True, squeeze=False)
     for place, axis in enumerate(axes.flat):
         if place >= len(methods):
             axis.set_visible(False)
@@ -61,25 +69,21 @@ def draw_map(document):
         method = methods[place]
         squares(axis, method["outcome"])
         dots(axis, method["outcome"], method["not_ok"])
-        title = "No limiter" if method["name"] == "none" else method["title"]
-        axis.set_title(title.replace("Area preserving", "Ours"), fontsize=8.5,
-                       fontweight="bold" if method["name"].startswith("apsl") else "normal")
-        axis.set_xticks(range(len(document["x"]["values"])),
-                        [value_label(v) if times else plain(v) for v in document["x"]["values"]], rotation=90, fontsize=7)
-        axis.set_yticks(range(len(document["y"]["values"])), [plain(v) for v in document["y"]["values"]], fontsize=7)
-        if place + columns >= len(methods):
-            axis.tick_params(labelbottom=True)
-    figure.suptitle(document["title"], x=0.01, ha="left", fontsize=11)
+        axis.set_title(title_of(method), fontsize=8, fontweight="bold" if method["name"].startswith("apsl") else "normal")
+        axis.set_xticks(range(len(document["x"]["values"])), labels(document["x"]), rotation=90, fontsize=7)
+        axis.set_yticks(range(len(document["y"]["values"])), labels(document["y"]), fontsize=7)
+        axis.tick_params(labelbottom=place + columns >= len(methods))
+    figure.suptitle(document["title"] + "\n", x=0.01, ha="left", fontsize=11)
     figure.supxlabel(document["x"]["label"], fontsize=9)
     figure.supylabel(document["y"]["label"], fontsize=9)
-    legend(figure, document)
+    legend(figure, document, "upper right")
     return figure
 
 
 def draw_cases(document):
     """One column a method, one row a case, the greatest area change written in."""
     methods, cases = document["methods"], document["cases"]
-    figure, axis = new_chart(width=11.0, height=1.6 + LEGEND_INCHES + 0.27 * len(cases))
+    figure, axis = new_chart(width=11.0, height=2.2 + 0.27 * len(cases))
     table = ["".join(method["outcome"][row] for method in methods) for row in range(len(cases))]
     squares(axis, table)
     for row in range(len(cases)):
@@ -88,13 +92,12 @@ def draw_cases(document):
             text = "–" if greatest is None else plain(float(f"{100.0 * greatest:.2g}")) if greatest < 10.0 else "> 1000"
             axis.text(column, row, text + ("*" if method["not_ok"][row] else ""), ha="center", va="center", fontsize=6,
                       color="white" if table[row][column] == "d" else "#222222")
-    titles = ["No limiter" if method["name"] == "none" else method["title"].replace("Area preserving", "Ours")
-              for method in methods]
-    axis.set_xticks(range(len(methods)), titles, rotation=45, ha="left", fontsize=7.5)
+    axis.set_xticks(range(len(methods)), [title_of(method) for method in methods], rotation=45, ha="left", fontsize=7.5)
     axis.xaxis.tick_top()
     axis.set_yticks(range(len(cases)), cases, fontsize=8)
     axis.invert_yaxis()
-    legend(figure, document)
+    axis.set_xlabel(" ")  # room for the legend
+    legend(figure, document, "lower center")
     return figure
 
 

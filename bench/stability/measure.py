@@ -4,6 +4,7 @@
 area change and its status: docs/stability/*.json."""
 
 import argparse
+import dataclasses
 import json
 import math
 import os
@@ -30,30 +31,37 @@ def write_scene(scene, folder, name):
     return {"file": f"{name}.scene.json", "name": name}
 
 
-def columns_of(name):
+def find_map(name, every):
+    """With every so many-th value of its axes."""
+    chosen = next(entry for entry in maps.MAPS if entry.name == name)
+    thin = [dataclasses.replace(axis, values=axis.values[::every]) for axis in (chosen.x, chosen.y)]
+    return dataclasses.replace(chosen, x=thin[0], y=thin[1])
+
+
+def columns_of(name, chosen):
     """Parts of a map or of the cases that are run by themselves: [(scenes by name of the point, methods)]."""
     if name == CASES:
         return [([(f"case_{row}", scene)], maps.CASE_METHODS) for row, (_, scene) in enumerate(maps.cases())]
-    chosen = next(entry for entry in maps.MAPS if entry.name == name)
     columns = []
-    for column, x in enumerate(chosen.x.values):
+    for x in chosen.x.values:
         methods = chosen.methods
         if chosen.alpha:
             methods = [{**method, "knobs": {**method["knobs"], "strain_limiting.regularization": x}}
                        if method["name"] != "none" else method for method in methods]
-        columns.append(([(f"{column}_{row}", chosen.scene(x, y)) for row, y in enumerate(chosen.y.values)], methods))
+        columns.append(([(f"{x:g} {y:g}", chosen.scene(x, y)) for y in chosen.y.values], methods))
     return columns
 
 
-def run_column(program, folder, number, scenes, methods, run_seconds):
+def run_column(program, folder, scenes, methods, run_seconds):
     """Runs that `folder` holds from before are not made again."""
     folder.mkdir(parents=True, exist_ok=True)
-    study = folder / f"{number}.study.json"
+    first = scenes[0][0]
+    study = folder / f"{first}.study.json"
     study.write_text(json.dumps({"scenes": [write_scene(scene, folder, name) for name, scene in scenes],
                                  "methods": methods, "keep_frames": True, "run_seconds": run_seconds}))
-    results = folder / f"{number}.json"
-    # Cloths are small and columns run side by side.
-    environment = {**os.environ, "OMP_NUM_THREADS": "1", "POCL_MAX_PTHREAD_COUNT": "1"}
+    results = folder / f"{first}.results.json"
+    # Cloths are small and columns run side by side: one thread each, pocl's device without threads where it is pocl.
+    environment = {"POCL_DEVICES": "basic", "OMP_NUM_THREADS": "1", **os.environ}
     done = subprocess.run([program, "compare", "--study", study, "--out", results], env=environment,
                           capture_output=True, text=True)
     if done.returncode != 0:
@@ -66,7 +74,7 @@ def rounded(value):
     return float(f"{value:.3g}") if math.isfinite(value) else None
 
 
-def condensed(name, results):
+def condensed(name, chosen, results):
     """What the documentation keeps. Rows from the first value of y, one letter a point (outcome.py) along x."""
     first = results[0]
     names = list(dict.fromkeys(run["method"] for run in first["runs"]))
@@ -76,11 +84,10 @@ def condensed(name, results):
         document["cases"] = [case for case, _ in maps.cases()]
         points = [[f"case_{row}"] for row in range(len(document["cases"]))]
     else:
-        chosen = next(entry for entry in maps.MAPS if entry.name == name)
         document["title"] = chosen.title
         document["x"] = {"label": chosen.x.label, "values": chosen.x.values}
         document["y"] = {"label": chosen.y.label, "values": chosen.y.values}
-        points = [[f"{column}_{row}" for column in range(len(chosen.x.values))] for row in range(len(chosen.y.values))]
+        points = [[f"{x:g} {y:g}" for x in chosen.x.values] for y in chosen.y.values]
     runs = {(run["scene"], run["method"]): run for part in results for run in part["runs"]}
     document["methods"] = []
     for method in names:
@@ -104,11 +111,10 @@ def text_of(document):
 
 
 def drop_ours(folder):
-    for path in folder.glob("*.json"):
-        if path.name.count(".") == 1:
-            results = json.loads(path.read_text())
-            results["runs"] = [run for run in results["runs"] if not run["method"].startswith("apsl")]
-            path.write_text(json.dumps(results))
+    for path in folder.glob("*.results.json"):
+        results = json.loads(path.read_text())
+        results["runs"] = [run for run in results["runs"] if not run["method"].startswith("apsl")]
+        path.write_text(json.dumps(results))
 
 
 def main():
@@ -120,6 +126,7 @@ def main():
     parser.add_argument("--out", type=Path, required=True, help="folder for the outcomes")
     parser.add_argument("--keep", choices=("nothing", "rivals", "all"), default="nothing",
                         help="of the runs that WORK holds from before")
+    parser.add_argument("--every", type=int, default=1, help="takes every so many-th value of a map's axes")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--run-seconds", type=float, default=60.0, help="no frame of a run begins after so long")
     options = parser.parse_args()
@@ -134,10 +141,10 @@ def main():
                 shutil.rmtree(folder, ignore_errors=True)
             elif options.keep == "rivals":
                 drop_ours(folder)
-            columns = columns_of(name)
-            results = list(pool.map(lambda entry: run_column(options.program, folder, entry[0], *entry[1],
-                                                             options.run_seconds), enumerate(columns)))
-            (options.out / f"{name}.json").write_text(text_of(condensed(name, results)))
+            chosen = None if name == CASES else find_map(name, options.every)
+            results = list(pool.map(lambda column: run_column(options.program, folder, *column, options.run_seconds),
+                                    columns_of(name, chosen)))
+            (options.out / f"{name}.json").write_text(text_of(condensed(name, chosen, results)))
             print(f"{options.out / name}.json", flush=True)
 
 
