@@ -18,6 +18,14 @@ BASE = {
     "integrator": {"implicit_springs": {"stretch_stiffness": 20.0, "bend_stiffness": 0.01, "damping": 0.5}},
 }
 
+# scenes/skirt.json, coarser: where long columns of cloth hang from a pinned waist.
+SKIRT = {
+    "mesh": {"tube": {"radius": [0.14, 0.38], "height": 0.55, "segments": [48, 24], "diagonals": "random", "jitter": 0.6}},
+    "density": 0.2,
+    "pins": [{"box": {"min": [-1.0, 0.27, -1.0]}}],
+    "integrator": {"implicit_springs": {"stretch_stiffness": 5.0, "bend_stiffness": 0.01, "damping": 0.5}},
+}
+
 # The paper's: consistent matrix, α = 1.2, 10 sub-steps, tolerance 0.1. The printed matrix needs α ≥ 2 when iterated.
 PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2, "strain_limiting.tolerance": 0.1,
          "strain_limiting.first_regularization": 0, "strain_limiting.kept_pressures": 0}
@@ -128,6 +136,9 @@ MAPS = [
              lambda scene, value: scene.update(density=value)), STIFFNESS),
     Map("needles", "Needles in every second column", TIME_STEP,
         Axis("aspect", [1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 10000.0], set_needles)),
+    Map("skirt", "A skirt: time step and stiffness",
+        Axis("time step (s)", [1 / 480, 1 / 240, 1 / 120, 1 / 60, 1 / 30, 1 / 15], with_time_step),
+        Axis(STIFFNESS.label, [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 200.0], set_stiffness), base=SKIRT),
     Map("refinement_stiffness", "Refinement and stiffness",
         Axis("vertices along a side", [3, 5, 9, 17, 25, 33, 49, 65], set_vertices), STIFFNESS),
     Map("pull_stiffness", "Opposite edges pulled apart",

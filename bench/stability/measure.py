@@ -52,6 +52,10 @@ def columns_of(name, chosen):
     return columns
 
 
+def steps(scenes):
+    return sum(scene["frames"] * scene["steps_per_frame"] for _, scene in scenes)
+
+
 def run_column(program, folder, scenes, methods, run_seconds):
     """Runs that `folder` holds from before are not made again."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -134,17 +138,23 @@ def main():
         if name not in known:
             parser.error(f"{name}: no such map, expected one of {', '.join(known)}")
     options.out.mkdir(parents=True, exist_ok=True)
+    chosen = {name: None if name == CASES else find_map(name, options.every) for name in options.maps or known}
     with ThreadPoolExecutor(options.jobs) as pool:
-        for name in options.maps or known:
+        futures = {}
+        for name in chosen:
             folder = options.work / name
             if options.keep == "nothing":
                 shutil.rmtree(folder, ignore_errors=True)
             elif options.keep == "rivals":
                 drop_ours(folder)
-            chosen = None if name == CASES else find_map(name, options.every)
-            results = list(pool.map(lambda column: run_column(options.program, folder, *column, options.run_seconds),
-                                    columns_of(name, chosen)))
-            (options.out / f"{name}.json").write_text(text_of(condensed(name, chosen, results)))
+            for number, column in enumerate(columns_of(name, chosen[name])):
+                futures[name, number] = (folder, *column, options.run_seconds)
+        # Those of most steps first, or the last of them would run alone.
+        for key in sorted(futures, key=lambda key: -steps(futures[key][1])):
+            futures[key] = pool.submit(run_column, options.program, *futures[key])
+        for name in chosen:
+            results = [future.result() for (of, _), future in futures.items() if of == name]
+            (options.out / f"{name}.json").write_text(text_of(condensed(name, chosen[name], results)))
             print(f"{options.out / name}.json", flush=True)
 
 

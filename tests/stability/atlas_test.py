@@ -20,6 +20,7 @@ sys.path.insert(0, str(PROJECT / "bench/stability"))
 import maps
 import measure
 import outcome
+import summary
 
 DATA = PROJECT / "docs/stability"
 CASE_FRAMES = 15
@@ -28,12 +29,6 @@ MOST_BYTES = 200_000
 
 def read(name):
     return json.loads((DATA / f"{name}.json").read_text())
-
-
-def ours(document):
-    """The library as it comes; on the map of α the consistent matrix."""
-    names = [method["name"] for method in document["methods"]]
-    return document["methods"][names.index("apsl_defaults" if "apsl_defaults" in names else "apsl")]
 
 
 def inner_points(rows, letters):
@@ -83,6 +78,11 @@ class Atlas(unittest.TestCase):
         for method in cases["methods"]:
             self.assertEqual(len(method["outcome"]), len(cases["cases"]))
 
+    def test_the_documentation_says_what_the_data_say(self):
+        self.assertIn(summary.summary(DATA), (PROJECT / "docs/stability.md").read_text())
+        for name in [m.name for m in maps.MAPS] + [measure.CASES]:
+            self.assertLessEqual((DATA / f"{name}.png").stat().st_size, 300_000)
+
     def run_again(self, chosen, method, x, y, folder):
         knobs = next(m["knobs"] for m in chosen.methods if m["name"] == method)
         if chosen.alpha:
@@ -95,7 +95,7 @@ class Atlas(unittest.TestCase):
         tried = 0
         for chosen in maps.MAPS:
             document = read(chosen.name)
-            method = ours(document)
+            method = summary.judged(document)
             for letters in (outcome.HELD, outcome.INACCURATE_ALONE + outcome.WORSE + outcome.DIVERGED_RUN):
                 points = [(document["x"]["values"][x], document["y"]["values"][y], method["outcome"][y][x])
                           for y, x in inner_points(method["outcome"], letters)]

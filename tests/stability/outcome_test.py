@@ -20,6 +20,7 @@ import maps
 import measure
 import meshes
 import outcome
+import summary
 from matplotlib import image
 
 
@@ -98,14 +99,42 @@ class Meshes(unittest.TestCase):
                 self.assertEqual(run.returncode, 0, run.stderr)
 
 
+def made_up_map():
+    axis = {"label": "stiffness (N/m)", "values": [1, 2]}
+
+    def method(name, rows, greatest):
+        return {"name": name, "title": name.upper(), "outcome": rows, "greatest": greatest, "not_ok": [[0], []]}
+
+    return {"map": "made_up", "title": "Made up", "x": axis, "y": axis, "methods": [
+        method("none", ["hi", "ii"], [[0.02, 0.5], [0.7, 0.8]]),
+        method("apsl_defaults", ["hi", "wd"], [[0.01, 0.2], [0.75, None]]),
+        method("apsl", ["hi", "wd"], [[0.01, 0.2], [0.75, None]]),
+        method("apsl_printed", ["ii", "ii"], [[0.2, 0.2], [0.3, 0.4]]),
+        method("pbd", ["hh", "ii"], [[0.03, 0.05], [0.3, 0.4]]),
+        method("xpbd", ["ih", "ii"], [[0.3, 0.04], [0.3, 0.4]])]}
+
+
+class Summary(unittest.TestCase):
+    def test_table(self):
+        self.assertEqual(summary.table([made_up_map()])[2],
+                         "| [Made up](stability/made_up.png) | 4 | 1 | 1 | 1 | 0 | 2 (PBD) | 1 | 2 |")
+
+    def test_points(self):
+        self.assertEqual(list(summary.held_by_rivals_alone(made_up_map())),
+                         ["stiffness (N/m) 1, stiffness (N/m) 2: ours 20 %, XPBD 4 %, held by 2"])
+        self.assertEqual(list(summary.worse_than_none(made_up_map())),
+                         ["stiffness (N/m) 2, stiffness (N/m) 1: ours 75 %, no limiter 70 %",
+                          "stiffness (N/m) 2, stiffness (N/m) 2: ours not finite, no limiter 80 %"])
+
+    def test_nothing_found_is_said(self):
+        self.assertEqual(summary.listed([made_up_map()], lambda _: []), ["None."])
+
+
 class Picture(unittest.TestCase):
     def test_a_map_shows_its_outcomes(self):
-        axis = {"label": "stiffness", "values": [1, 2]}
-        document = {"title": "made up", "x": axis, "y": axis, "methods": [
-            {"name": "apsl", "title": "Ours", "outcome": ["hi", "wd"], "not_ok": [[0], []]}]}
         with tempfile.TemporaryDirectory() as folder:
             file, out = Path(folder) / "map.json", Path(folder) / "map.png"
-            file.write_text(json.dumps(document))
+            file.write_text(json.dumps(made_up_map()))
             subprocess.run([PROJECT / "bench/charts/stability_map.py", file, "--out", out], check=True,
                            capture_output=True, timeout=60)
             pixels = (image.imread(out)[:, :, :3] * 255.0).round().astype(int)
