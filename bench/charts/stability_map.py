@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Draws one map of the atlas of failure, or its single cases, from bench/stability/measure.py's results: a panel for each
-method, a square for each point."""
+"""Draws one map of the atlas of failure, or its single cases, from bench/stability/measure.py's results: a panel for
+each method, a square for each point."""
 
 import sys
 
@@ -69,7 +69,8 @@ def draw_map(document):
         method = methods[place]
         squares(axis, method["outcome"])
         dots(axis, method["outcome"], method["not_ok"])
-        axis.set_title(title_of(method), fontsize=8, fontweight="bold" if method["name"].startswith("apsl") else "normal")
+        weight = "bold" if method["name"].startswith("apsl") else "normal"
+        axis.set_title(title_of(method), fontsize=8, fontweight=weight)
         axis.set_xticks(range(len(document["x"]["values"])), labels(document["x"]), rotation=90, fontsize=7)
         axis.set_yticks(range(len(document["y"]["values"])), labels(document["y"]), fontsize=7)
         axis.tick_params(labelbottom=place + columns >= len(methods))

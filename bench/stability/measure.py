@@ -32,9 +32,9 @@ def write_scene(scene, folder, name):
 
 
 def find_map(name, every):
-    """With every so many-th value of its axes."""
+    """With every so many-th value of its axes, the last one among them."""
     chosen = next(entry for entry in maps.MAPS if entry.name == name)
-    thin = [dataclasses.replace(axis, values=axis.values[::every]) for axis in (chosen.x, chosen.y)]
+    thin = [dataclasses.replace(axis, values=axis.values[::-1][::every][::-1]) for axis in (chosen.x, chosen.y)]
     return dataclasses.replace(chosen, x=thin[0], y=thin[1])
 
 

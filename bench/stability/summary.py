@@ -49,8 +49,9 @@ def held_by_rivals_alone(document):
                    if not is_ours(method) and method["outcome"][row][column] == outcome.HELD]
         if holding:
             best = min(holding, key=lambda method: method["greatest"][row][column])
+            title = "no limiter" if best["name"] == "none" else best["title"]
             yield (f"{name}: ours {percent(ours['greatest'][row][column])}, "
-                   f"{'no limiter' if best['name'] == 'none' else best['title']} {percent(best['greatest'][row][column])}"
+                   f"{title} {percent(best['greatest'][row][column])}"
                    + (f", held by {len(holding)}" if len(holding) > 1 else ""))
 
 
@@ -66,15 +67,16 @@ def worse_than_none(document):
 
 
 def table(documents):
-    lines = ["| map | points | no limiter holds | ours, the defaults | ours, the paper's | ours, printed | best rival | "
-             "a rival holds, ours does not | ours worse than no limiter |", "|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| map | points | no limiter holds | ours, the defaults | ours, the paper's | ours, printed | best rival "
+             "| a rival holds, ours does not | ours worse than no limiter |", "|---|---|---|---|---|---|---|---|---|"]
     for document in documents:
         methods = {method["name"]: method for method in document["methods"]}
         held = {name: str(count(method, outcome.HELD)) for name, method in methods.items()}
         rivals = [method for method in document["methods"] if not is_ours(method) and method["name"] != "none"]
         best = max(rivals, key=lambda method: count(method, outcome.HELD), default=None)
         lines.append("| " + " | ".join([
-            f"[{document.get('title', 'Single cases')}](stability/{document['map']}.png)", str(len(points_of(document))),
+            f"[{document.get('title', 'Single cases')}](stability/{document['map']}.png)",
+            str(len(points_of(document))),
             held["none"], held.get("apsl_defaults", "–"), held["apsl"], held["apsl_printed"],
             "–" if best is None else f"{held[best['name']]} ({best['title']})",
             str(len(list(held_by_rivals_alone(document)))), str(len(list(worse_than_none(document))))]) + " |")
