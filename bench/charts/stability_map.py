@@ -5,10 +5,9 @@ each method, a square for each point."""
 
 import sys
 
+from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, plain, read_json, save_chart
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
-
-from chart_tools import ChartError, OneLineParser, exit_code_of, new_chart, plain, read_json, save_chart
 
 # Told apart by colour-blind eyes and in print by how dark they are.
 COLOURS = {"h": "#56B4E9", "i": "#F0E442", "w": "#E69F00", "d": "#222222", "t": "#bbbbbb"}
@@ -97,7 +96,8 @@ def draw_cases(document):
     axis.xaxis.tick_top()
     axis.set_yticks(range(len(cases)), cases, fontsize=8)
     axis.invert_yaxis()
-    axis.set_xlabel(" ")  # room for the legend
+    share = 0.35 / figure.get_figheight()
+    figure.get_layout_engine().set(rect=(0.0, share, 1.0, 1.0 - share))  # room for the legend
     legend(figure, document, "lower center")
     return figure
 

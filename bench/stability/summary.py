@@ -17,12 +17,20 @@ def is_ours(method):
     return method["name"].startswith("apsl")
 
 
+def named(label, value):
+    """mass ratio 100 000; time step 1/60 s; speed 3 m/s."""
+    name, _, unit = label.removesuffix(")").partition(" (")
+    number = f"1/{round(1.0 / value)}" if name == "time step" else (
+        f"{value:,.0f}".replace(",", " ") if value >= 1000 else f"{value:g}")
+    return f"{name} {number}" + (f" {unit}" if unit else "")
+
+
 def points_of(document):
     """(name of the point, row, column)."""
     if "cases" in document:
         return [(name, row, 0) for row, name in enumerate(document["cases"])]
     x, y = document["x"], document["y"]
-    return [(f"{y['label']} {b:.3g}, {x['label']} {a:.3g}", row, column)
+    return [(f"{named(y['label'], b)}, {named(x['label'], a)}", row, column)
             for row, b in enumerate(y["values"]) for column, a in enumerate(x["values"])]
 
 
@@ -31,7 +39,9 @@ def count(method, letter):
 
 
 def percent(change):
-    return "not finite" if change is None else f"{100.0 * change:.2g} %" if change < 10.0 else "> 1000 %"
+    if change is None:
+        return "not finite"
+    return f"{float(f'{100.0 * change:.2g}'):g} %" if change < 10.0 else "> 1000 %"
 
 
 def judged(document):

@@ -121,10 +121,15 @@ class Summary(unittest.TestCase):
 
     def test_points(self):
         self.assertEqual(list(summary.held_by_rivals_alone(made_up_map())),
-                         ["stiffness (N/m) 1, stiffness (N/m) 2: ours 20 %, XPBD 4 %, held by 2"])
+                         ["stiffness 1 N/m, stiffness 2 N/m: ours 20 %, XPBD 4 %, held by 2"])
         self.assertEqual(list(summary.worse_than_none(made_up_map())),
-                         ["stiffness (N/m) 2, stiffness (N/m) 1: ours 75 %, no limiter 70 %",
-                          "stiffness (N/m) 2, stiffness (N/m) 2: ours not finite, no limiter 80 %"])
+                         ["stiffness 2 N/m, stiffness 1 N/m: ours 75 %, no limiter 70 %",
+                          "stiffness 2 N/m, stiffness 2 N/m: ours not finite, no limiter 80 %"])
+
+    def test_names_of_points(self):
+        self.assertEqual(summary.named("time step (s)", 1 / 60), "time step 1/60 s")
+        self.assertEqual(summary.named("mass ratio", 1e5), "mass ratio 100 000")
+        self.assertEqual(summary.named("speed (m/s)", 0.3), "speed 0.3 m/s")
 
     def test_nothing_found_is_said(self):
         self.assertEqual(summary.listed([made_up_map()], lambda _: []), ["None."])
