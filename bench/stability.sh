@@ -27,8 +27,9 @@ if $measure; then
   cmake --build --preset dev --target apsl_program
   bench/stability/measure.py build/dev/apsl "$@" --keep "$keep" --every "$every" --work build/stability --out "$results"
 fi
-for file in "$results"/*.json; do
-  name="$(basename "$file" .json)"
-  [[ $# -eq 0 || " $* " == *" $name "* ]] || continue
-  bench/charts/stability_map.py "$file" --out "$results/$name.png"
+files=("$results"/*.json)
+[[ $# -gt 0 ]] && files=("${@/#/$results/}") && files=("${files[@]/%/.json}")
+for file in "${files[@]}"; do
+  bench/charts/stability_map.py "$file" --out "${file%.json}.png"
 done
+echo "docs/stability.md quotes: bench/stability/summary.py $results"

@@ -29,6 +29,7 @@ SKIRT = {
 
 # The paper's: consistent matrix, α = 1.2, 10 sub-steps, tolerance 0.1. The printed matrix needs α ≥ 2 when iterated.
 PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2, "strain_limiting.tolerance": 0.1,
+         "strain_limiting.max_iterations": 50, "strain_limiting.target_area_change": 0,
          "strain_limiting.first_regularization": 0, "strain_limiting.kept_pressures": 0}
 PRINTED = {**PAPER, "strain_limiting.regularization": 2}
 OURS = [{"name": "apsl_defaults", "knobs": {}}, {"name": "apsl", "knobs": PAPER},
