@@ -3,6 +3,7 @@
 
 #include "run/input_error.hpp"
 #include "run/override_scene.hpp"
+#include "run/parse_vertices.hpp"
 #include "run/scene_object.hpp"
 
 #include <apsl/error.hpp>
@@ -88,50 +89,12 @@ MeshSource parse_mesh(SceneObject object, const std::filesystem::path& folder) {
     return source;
 }
 
-PinMotion parse_motion(SceneObject object) {
-    PinMotion motion;
-    motion.start = object.number("start", motion.start, Range::at_least(0.0));
-    motion.stop = object.number("stop", motion.stop, Range::at_least(motion.start));
-    const std::string kind = object.only_one_of({"rotate", "translate"});
-    SceneObject path(object.find(kind));
-    if (kind == "rotate") {
-        PinRotation rotation;
-        rotation.axis = path.vector3("axis", rotation.axis);
-        rotation.degrees_per_second = path.number("degrees_per_second", rotation.degrees_per_second);
-        if (path.has("center")) rotation.center = path.vector3("center", {});
-        if (rotation.axis == std::array<double, 3>{}) path.find("axis").fail("expected an axis of any length but 0");
-        motion.path = rotation;
-    } else {
-        motion.path = PinTranslation{path.vector3("velocity", {})};
-    }
-    path.refuse_other_keys();
-    return motion;
-}
-
-Pin parse_pin(SceneObject object) {
-    Pin pin;
-    if (object.has("motion")) pin.motion = parse_motion(SceneObject(object.find("motion")));
-    const std::string kind = object.only_one_of({"vertices", "corners", "box"});
-    const SceneValue value = object.find(kind);
-    if (kind == "vertices") {
-        PinnedVertices selection;
-        for (const SceneValue& vertex : value.entries()) {
-            selection.vertices.push_back(static_cast<std::uint32_t>(vertex.integer(0, kMaxCount)));
-        }
-        pin.selection = std::move(selection);
-    } else if (kind == "corners") {
-        PinnedCorners selection;
-        for (const SceneValue& corner : value.entries()) selection.corners.push_back(corner.text());
-        pin.selection = std::move(selection);
-    } else {
-        SceneObject box_object(value);
-        PinnedBox box;
-        box.min = box_object.vector3("min", box.min);
-        box.max = box_object.vector3("max", box.max);
-        box_object.refuse_other_keys();
-        pin.selection = box;
-    }
-    return pin;
+Start parse_start(SceneObject object) {
+    Start start;
+    start.scale = object.vector3("scale", start.scale);
+    start.random = object.number("random", start.random, Range::at_least(0.0));
+    object.refuse_other_keys();
+    return start;
 }
 
 Integrator parse_integrator(SceneObject object) {
@@ -257,6 +220,12 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     if (object.has("pins")) {
         for (const SceneValue& pin : object.find("pins").entries()) scene.pins.push_back(parse_pin(SceneObject(pin)));
     }
+    if (object.has("masses")) {
+        for (const SceneValue& masses : object.find("masses").entries()) {
+            scene.masses.push_back(parse_mass_factor(SceneObject(masses)));
+        }
+    }
+    if (object.has("start")) scene.start = parse_start(SceneObject(object.find("start")));
     scene.gravity = object.vector3("gravity", scene.gravity);
     scene.time_step = object.number("time_step", scene.time_step, Range::above(0.0));
     scene.steps_per_frame = static_cast<int>(object.integer("steps_per_frame", scene.steps_per_frame, 1, kMaxCount));
