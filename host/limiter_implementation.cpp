@@ -61,40 +61,43 @@ void check_topologies(std::span<const std::shared_ptr<const Topology>> cloths) {
 }  // namespace
 
 StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id the_device,
-                                              std::span<const std::shared_ptr<const Topology>> topologies,
-                                              const Options& requested, const DeviceFacts& the_facts,
-                                              const BufferView& scratch)
+                                              const DeviceFacts& the_facts, const BufferView& scratch)
     : facts(the_facts), context(the_context), device(the_device), memory(context, device, facts, scratch) {
+}
+
+Adjacency StrainLimiter::Implementation::plan(std::span<const std::shared_ptr<const Topology>> topologies,
+                                              const Options& requested) {
     check_topologies(topologies);
     options = resolve(requested, facts, topologies);
     largest_cloth = largest_triangle_count(topologies);
-    const Adjacency adjacency = build_adjacency(topologies, options.matrix, uses_pattern(options),
-                                                patch_triangles(facts, options, largest_cloth));
-    max_patch_vertices = adjacency.max_patch_vertices;
-    create_buffers(adjacency);
+    return build_adjacency(topologies, options.matrix, uses_pattern(options),
+                           patch_triangles(facts, options, largest_cloth));
 }
 
 StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id the_device,
                                               std::span<const std::shared_ptr<const Topology>> topologies,
                                               const Options& requested, const BufferView& scratch,
                                               const Implementation* built)
-    : Implementation(the_context, the_device, topologies, requested, built ? built->facts : device_facts(the_device),
-                     scratch) {
-    if (built && max_patch_vertices <= built->patch_vertex_room) {
+    : Implementation(the_context, the_device, built ? built->facts : device_facts(the_device), scratch) {
+    const Adjacency adjacency = plan(topologies, requested);
+    if (built && adjacency.max_patch_vertices <= built->patch_vertex_room) {
         patch_vertex_room = built->patch_vertex_room;
         check(clRetainProgram(built->program.get()), "keeping the kernel program");
         program = ProgramHandle(built->program.get());
     } else {
-        patch_vertex_room = room_for_patches(max_patch_vertices);
+        patch_vertex_room = room_for_patches(adjacency.max_patch_vertices);
         program = build_program(context, device, program_source(kernel_files(options)),
                                 build_options(options, patch_vertex_room));
     }
+    create_buffers(adjacency);
     create_kernels();
 }
 
 std::size_t StrainLimiter::Implementation::required_scratch_bytes(
     cl_device_id device, std::span<const std::shared_ptr<const Topology>> topologies, const Options& requested) {
-    return Implementation(nullptr, device, topologies, requested, device_facts(device), {}).memory.required();
+    Implementation counted(nullptr, device, device_facts(device), {});
+    counted.create_buffers(counted.plan(topologies, requested));
+    return counted.memory.required();
 }
 
 void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {

@@ -34,7 +34,6 @@ struct StrainLimiter::Implementation {
     Options options;
     cl_context context;
     cl_device_id device;
-    std::uint32_t max_patch_vertices = 0;
     std::uint32_t patch_vertex_room = 0;  ///< vertices of a patch that the program has room for
     std::uint32_t cloth_count = 0, vertex_count = 0, triangle_count = 0, rest_area_count = 0, groups = 1;
     std::size_t largest_cloth = 0;  ///< triangles
@@ -59,9 +58,10 @@ struct StrainLimiter::Implementation {
     host::Kernel filter_in_one_group;
 
 private:
-    /// Options, and buffers from `scratch` (host/device_memory.hpp), no program yet.
-    Implementation(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
-                   const Options& requested, const host::DeviceFacts& facts, const BufferView& scratch);
+    /// No program and no buffers yet.
+    Implementation(cl_context context, cl_device_id device, const host::DeviceFacts& facts, const BufferView& scratch);
+    /// Resolves the options on the way.
+    host::Adjacency plan(std::span<const std::shared_ptr<const Topology>> cloths, const Options& requested);
 
     bool one_group() const { return options.execution == Execution::one_group; }
     bool assembled() const { return options.apply == Apply::assembled_csr; }

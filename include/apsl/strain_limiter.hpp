@@ -20,8 +20,8 @@ namespace apsl {
 
 /// What is compiled into the kernels of a StrainLimiter.
 struct Options {
-    Matrix matrix = Matrix::consistent;
-    Apply apply = Apply::matrix_free;
+    Matrix matrix = Matrix::consistent;  ///< what couples the pressures
+    Apply apply = Apply::matrix_free;    ///< how it is applied
     /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU kept_pressures 0.
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
@@ -29,11 +29,11 @@ struct Options {
     /// Floats from one vertex to the next in positions and in velocities: ≥ 3, or 1 and more where components lie in
     /// runs of their own.
     std::uint32_t position_stride = 3;
-    std::uint32_t velocity_stride = 3;
+    std::uint32_t velocity_stride = 3;  ///< likewise
     /// Floats from x to y and from y to z: 1 side by side (xyzxyz…); otherwise a number such that the runs do not
     /// overlap (structure of arrays: xxx…yyy…zzz… has stride 1 and here the vertices that there is room for).
     std::uint32_t position_component_stride = 1;
-    std::uint32_t velocity_component_stride = 1;
+    std::uint32_t velocity_component_stride = 1;  ///< likewise
     /// Floats from one inverse mass to the next, ≥ 1. In the w of xyzw positions: 4, and Buffers::inverse_masses at the
     /// positions' offset + 12.
     std::uint32_t inverse_mass_stride = 1;
@@ -51,8 +51,8 @@ struct Options {
 
 /// A place in a caller's buffer. The element stride is fixed in Options.
 struct BufferView {
-    cl_mem buffer = nullptr;
-    std::size_t offset = 0;  ///< bytes, a multiple of 4
+    cl_mem buffer = nullptr;  ///< the caller's; must live until the calls that use it complete
+    std::size_t offset = 0;   ///< bytes, a multiple of 4
 };
 
 /// 32-bit floats in the caller's buffers. With several cloths their vertices and triangles follow one another in the
@@ -70,9 +70,9 @@ struct Buffers {
 
 /// One kernel's share of the profiled commands (see StrainLimiter::profile).
 struct KernelTime {
-    std::string name;
-    std::int64_t launches = 0;
-    double seconds = 0.0;  ///< on the device, from the profiling events
+    std::string name;           ///< of the kernel, as in kernels/
+    std::int64_t launches = 0;  ///< since the last call of profile()
+    double seconds = 0.0;       ///< on the device, from the profiling events
 };
 
 /// The filter of Algorithm 1 on an OpenCL device, inside the caller's context, queue and buffers.
@@ -90,11 +90,12 @@ public:
     /// ask for), kernel_build, opencl.
     StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
                   const Options& options = {}, const BufferView& scratch = {});
+    /// The same for one cloth.
     StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
                   const Options& options = {}, const BufferView& scratch = {});
     ~StrainLimiter();
-    StrainLimiter(StrainLimiter&&) noexcept;
-    StrainLimiter& operator=(StrainLimiter&&) noexcept;
+    StrainLimiter(StrainLimiter&&) noexcept;             ///< what was moved from may only be assigned to or destroyed
+    StrainLimiter& operator=(StrainLimiter&&) noexcept;  ///< likewise
 
     /// Bytes of `scratch` that a limiter for these cloths and options needs at any offset: what it holds, and the gaps
     /// that the device's alignment of sub-buffers makes. Works through the topologies, on the host.
@@ -108,10 +109,12 @@ public:
     /// Calls queued before complete undisturbed. Throws as the constructor does; the limiter then stays as it was.
     /// `scratch` as in the constructor; it may not overlap the present one.
     void rebuild(std::span<const std::shared_ptr<const Topology>> cloths, const BufferView& scratch = {});
+    /// The same for one cloth.
     void rebuild(const std::shared_ptr<const Topology>& cloth, const BufferView& scratch = {});
 
     /// Device memory this object holds, adjacency included.
     std::size_t scratch_bytes() const noexcept;
+    /// The cloths it was made for.
     std::size_t cloth_count() const noexcept;
     /// The options as resolved for the device (no zeros left).
     const Options& options() const noexcept;
@@ -121,6 +124,7 @@ public:
     /// Throws Error(invalid_argument) before anything is queued, Error(opencl) where a call fails.
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers,
                                    std::span<const Parameters> parameters, std::span<const cl_event> wait_list = {});
+    /// The same with one set of parameters for all cloths.
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers, const Parameters& parameters,
                                    std::span<const cl_event> wait_list = {});
 
