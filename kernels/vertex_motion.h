@@ -31,7 +31,8 @@ APSL_INLINE float3 load_velocity(__global const float* velocities, uint vertex) 
 
 // Of (x̃ + Δt ṽ, inverse mass). A position or velocity that is not finite leaves nothing finite.
 APSL_INLINE bool is_bad_vertex(float4 predicted) {
-    return !all(isfinite(predicted)) || predicted.w < 0.0f;
+    return !isfinite(predicted.x) || !isfinite(predicted.y) || !isfinite(predicted.z) || !isfinite(predicted.w) ||
+           predicted.w < 0.0f;
 }
 
 // predicted = (x̃ + Δt ṽ, inverse mass), in the limiter's order of vertices. Returns how many of this work-item's are

@@ -69,10 +69,9 @@ inline constexpr std::array names_of<Execution>{std::pair{Execution::automatic, 
                                                 std::pair{Execution::many_groups, "many_groups"},
                                                 std::pair{Execution::one_group, "one_group"}};
 template <>
-inline constexpr std::array names_of<Status>{std::pair{Status::ok, "ok"},
-                                             std::pair{Status::not_converged, "not_converged"},
-                                             std::pair{Status::worsened, "worsened"},
-                                             std::pair{Status::diverged, "diverged"}};
+inline constexpr std::array names_of<Status>{
+    std::pair{Status::ok, "ok"}, std::pair{Status::not_converged, "not_converged"},
+    std::pair{Status::worsened, "worsened"}, std::pair{Status::diverged, "diverged"}};
 template <>
 inline constexpr std::array names_of<Offender>{std::pair{Offender::none, "none"}, std::pair{Offender::vertex, "vertex"},
                                                std::pair{Offender::triangle, "triangle"}};

@@ -55,7 +55,7 @@ struct Parameters {
     /// last, α − 1 changes by the same factor from one sub-step to the next (docs/formulation.md). Needs
     /// regularization > 1; a per-triangle α is that of the last sub-step and is scaled alike.
     float first_regularization = 0.0f;
-    Stepping stepping = Stepping::automatic;
+    Stepping stepping = Stepping::automatic;  ///< from where the sub-steps correct
 };
 
 /// Throws Error(invalid_argument) naming the first field that is out of range or not finite.
