@@ -79,4 +79,35 @@ ProgramHandle build_program(cl_context context, cl_device_id device, const std::
     return program;
 }
 
+ProgramHandle load_program(cl_context context, cl_device_id device, std::span<const std::byte> driver_binary,
+                           const std::string& build_options) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(driver_binary.data());
+    const std::size_t size = driver_binary.size();
+    cl_int status = CL_SUCCESS, binary_status = CL_SUCCESS;
+    ProgramHandle program(clCreateProgramWithBinary(context, 1, &device, &size, &bytes, &binary_status, &status));
+    if (status != CL_SUCCESS || binary_status != CL_SUCCESS ||
+        clBuildProgram(program.get(), 1, &device, build_options.c_str(), nullptr, nullptr) != CL_SUCCESS)
+        return {};
+    return program;
+}
+
+std::vector<std::byte> driver_binary(cl_program program, cl_device_id device) {
+    // The program belongs to all devices of the context, built for this one alone.
+    constexpr const char* doing = "asking the kernel program for its binary";
+    cl_uint count = 0;
+    check(clGetProgramInfo(program, CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr), doing);
+    std::vector<cl_device_id> devices(count);
+    check(clGetProgramInfo(program, CL_PROGRAM_DEVICES, count * sizeof(cl_device_id), devices.data(), nullptr), doing);
+    std::vector<std::size_t> sizes(count);
+    check(clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, count * sizeof(std::size_t), sizes.data(), nullptr),
+          doing);
+    const auto at = static_cast<std::size_t>(std::find(devices.begin(), devices.end(), device) - devices.begin());
+    if (at == count) return {};
+    std::vector<std::byte> bytes(sizes[at]);
+    std::vector<void*> places(count, nullptr);
+    places[at] = bytes.data();
+    check(clGetProgramInfo(program, CL_PROGRAM_BINARIES, count * sizeof(void*), places.data(), nullptr), doing);
+    return bytes;
+}
+
 }  // namespace apsl::host
