@@ -7,6 +7,7 @@
 #include <apsl/error.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 namespace apsl::host {
@@ -101,13 +102,17 @@ std::vector<std::byte> driver_binary(cl_program program, cl_device_id device) {
     std::vector<std::size_t> sizes(count);
     check(clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, count * sizeof(std::size_t), sizes.data(), nullptr),
           doing);
-    const auto at = static_cast<std::size_t>(std::find(devices.begin(), devices.end(), device) - devices.begin());
+    // pocl 3.1 puts the one binary first, whichever device it is of.
+    std::size_t at = static_cast<std::size_t>(std::ranges::find(devices, device) - devices.begin());
+    if (at == count || sizes[at] == 0)
+        at = static_cast<std::size_t>(std::ranges::find_if(sizes, std::identity{}) - sizes.begin());
     if (at == count) return {};
-    std::vector<std::byte> bytes(sizes[at]);
-    std::vector<void*> places(count, nullptr);
-    places[at] = bytes.data();
+    // A place for each: pocl 3.1 writes through the null that by the specification leaves one out.
+    std::vector<std::vector<std::byte>> binaries;
+    std::vector<void*> places;
+    for (const std::size_t size : sizes) places.push_back(binaries.emplace_back(size).data());
     check(clGetProgramInfo(program, CL_PROGRAM_BINARIES, count * sizeof(void*), places.data(), nullptr), doing);
-    return bytes;
+    return binaries[at];
 }
 
 }  // namespace apsl::host

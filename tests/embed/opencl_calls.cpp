@@ -3,10 +3,12 @@
 
 #include <CL/cl.h>
 #include <dlfcn.h>
+#include <algorithm>
 
 namespace {
 
 apsl::test::OpenClCalls calls;
+apsl::test::Pretence pretended;
 
 /// The ICD loader's own definition of the function.
 template <class Function>
@@ -14,10 +16,19 @@ Function* real(const char* name) {
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
+/// The text's first letter changed.
+void alter(void* text, size_t size) {
+    if (text && size > 0) static_cast<char*>(text)[0] ^= 1;
+}
+
 }  // namespace
 
 apsl::test::OpenClCalls apsl::test::opencl_calls() {
     return calls;
+}
+
+void apsl::test::pretend(const Pretence& pretence) {
+    pretended = pretence;
 }
 
 #define SHOWN __attribute__((visibility("default")))
@@ -54,6 +65,38 @@ SHOWN cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_i
     static auto* const next = real<decltype(clBuildProgram)>("clBuildProgram");
     ++calls.builds;
     return next(program, count, devices, options, notify, user);
+}
+
+SHOWN cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, const cl_device_id* devices,
+                                           const size_t* lengths, const unsigned char** binaries, cl_int* statuses,
+                                           cl_int* status) {
+    static auto* const next = real<decltype(clCreateProgramWithBinary)>("clCreateProgramWithBinary");
+    ++calls.binaries;
+    if (!pretended.binaries_are_invalid) return next(context, count, devices, lengths, binaries, statuses, status);
+    *status = CL_INVALID_BINARY;
+    return nullptr;
+}
+
+SHOWN cl_int clGetProgramInfo(cl_program program, cl_program_info what, size_t size, void* value, size_t* value_size) {
+    static auto* const next = real<decltype(clGetProgramInfo)>("clGetProgramInfo");
+    const cl_int status = next(program, what, size, value, value_size);
+    if (pretended.no_binaries && what == CL_PROGRAM_BINARY_SIZES) std::fill_n(static_cast<char*>(value), size, char{0});
+    return status;
+}
+
+SHOWN cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* value_size) {
+    static auto* const next = real<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
+    const cl_int status = next(device, what, size, value, value_size);
+    if (what == pretended.other_device_text) alter(value, size);
+    return status;
+}
+
+SHOWN cl_int clGetPlatformInfo(cl_platform_id platform, cl_platform_info what, size_t size, void* value,
+                               size_t* value_size) {
+    static auto* const next = real<decltype(clGetPlatformInfo)>("clGetPlatformInfo");
+    const cl_int status = next(platform, what, size, value, value_size);
+    if (what == pretended.other_platform_text) alter(value, size);
+    return status;
 }
 
 SHOWN cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset, size_t size,
