@@ -64,11 +64,13 @@ void run(const Arguments& arguments) {
     const OpenClTime after = opencl_time();
 
     std::vector<std::byte> binary;
+    begin = std::chrono::steady_clock::now();
     if (arguments.ask_before_call) binary = limiter.program_binary();
+    const double asking_before = seconds_since(begin);
     const double first = call(limiter, device, buffers), second = call(limiter, device, buffers);
     begin = std::chrono::steady_clock::now();
     if (!arguments.keep.empty() && binary.empty()) binary = limiter.program_binary();
-    const double asking = seconds_since(begin);
+    const double asking = asking_before + seconds_since(begin);
     if (!arguments.keep.empty())
         std::ofstream(arguments.keep, std::ios::binary)
             .write(reinterpret_cast<const char*>(binary.data()), static_cast<std::streamsize>(binary.size()));
