@@ -16,9 +16,9 @@ Function* real(const char* name) {
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
-/// The text's first letter changed.
+/// The text's last letter changed.
 void alter(void* text, size_t size) {
-    if (text && size > 0) static_cast<char*>(text)[0] ^= 1;
+    if (text && size > 1) static_cast<char*>(text)[size - 2] ^= 1;
 }
 
 }  // namespace

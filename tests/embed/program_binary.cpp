@@ -133,7 +133,7 @@ TEST_CASE("program binary: of other options, device or driver it is refused and 
         StrainLimiter fresh = limiter(other);
         check_refused(kept.binary, ProgramBinaryUse::other_program, other, filtered(fresh, other));
     }
-    for (const cl_device_info text : {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DRIVER_VERSION}) {
+    for (const cl_device_info text : {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION}) {
         CAPTURE(text);
         const Pretending elsewhere({.other_device_text = text});
         check_refused(kept.binary, ProgramBinaryUse::other_program, kept.options, kept.expected);
