@@ -5,19 +5,31 @@ set -euo pipefail
 packages=(
   # the library
   build-essential cmake ninja-build ocl-icd-opencl-dev opencl-c-headers
+  # Debian packages of it
+  file gzip
   # an OpenCL device for machines without a GPU
   pocl-opencl-icd
   # the reference and the program
-  libeigen3-dev libcli11-dev nlohmann-json3-dev libtinyobjloader-dev libassimp-dev
+  libeigen3-dev libcli11-dev nlohmann-json3-dev opencl-clhpp-headers
   # pictures and charts
   python3 python3-vtk9 python3-matplotlib python3-pil xvfb xauth
 )
 if [[ "${1:-}" == "--tests" ]]; then
   packages+=(
     catch2 libbenchmark-dev libviennacl-dev python3-jsonschema oclgrind git
+    # the library as a package: HTML documentation, binary interface, pkg-config, Debian packages, a clean system
+    doxygen abigail-tools binutils pkg-config lintian debootstrap
+    # the Python module in a virtual environment
+    python3-dev python3-venv
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
+    # the fuzzers of the readers
+    libclang-rt-19-dev
   )
+fi
+if [[ "${1:-}" == "--blender" ]]; then
+  # what Blender as a Python module (tests/scenes/viewers/blender.sh) finds on any desktop
+  packages+=(python3-venv libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libxrender1)
 fi
 
 missing=()

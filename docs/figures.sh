@@ -8,6 +8,7 @@ cmake/debian_packages.sh
 cmake --preset program >/dev/null
 cmake --build --preset program
 program=build/program/apsl
+embedded=build/program/scenes/embedded/embedded_cloth
 runs=out/figures
 mkdir -p "$runs" docs/pictures docs/charts
 
@@ -38,6 +39,13 @@ still paper_fig6 110 --zoom 1.2
 still twist 150
 still skirt 179
 still sphere_drape 89 --zoom 1.45
+
+mkdir -p "$runs/embedded"
+echo '{"colliders": [{"sphere": {"center": [0, -0.35, 0], "radius": 0.3}}]}' > "$runs/embedded/colliders.json"
+"$embedded" --out "$runs/embedded"
+still embedded last --scene "$runs/embedded/colliders.json" --azimuth 50 --elevation 20
+"$embedded" --frames 16 --trace "$runs/embedded/trace.json"
+scenes/pictures/draw_trace.py "$runs/embedded/trace.json" --out docs/pictures/embedded_trace.png
 
 bench/charts/area_change_curves.py "$runs/curtain_unfiltered/report.json" "$runs/curtain/report.json" \
   "$runs/stand_alone_curtain/report.json" --labels "filter off" "filter on" "stand-alone" \

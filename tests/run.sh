@@ -1,11 +1,26 @@
 #!/usr/bin/env bash
-# Sets up a Debian 12 machine, builds everything with warnings as errors, and runs all tests. Fails without an OpenCL
-# device.
+# Sets up a Debian 12 machine, builds everything with warnings as errors, and runs all tests: on pocl, on a checker, on a
+# second OpenCL implementation, and the library's own under the sanitizers. Fails without an OpenCL device.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 cmake/debian_packages.sh --tests
 git ls-files '*.cpp' '*.hpp' '*.h' '*.cl' | xargs -r clang-format-19 --dry-run --Werror
+skipped=""
+cmake/intel_opencl.sh || skipped="SKIPPED: the tests on Intel's OpenCL: cmake/intel_opencl.sh could not install it"
 cmake --preset ci
 cmake --build --preset ci
 ctest --preset ci -j "$(nproc)"
+# The readers of scenes and meshes, each fuzzed for a while with clang's sanitizers.
+cmake --preset fuzz
+cmake --build --preset fuzz
+ctest --preset fuzz -j "$(nproc)"
+
+# What of the sanitizers fits the time. The rest, the program's tests and the comparison's under
+# AddressSanitizer: cmake --build --preset asan && ctest --preset asan
+for sanitized in tsan asan-library; do
+  cmake --preset "${sanitized%-library}"
+  cmake --build --preset "$sanitized"
+  ctest --preset "$sanitized" -j "$(nproc)"
+done
+[[ -z "$skipped" ]] || echo "$skipped" >&2

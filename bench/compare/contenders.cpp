@@ -41,6 +41,12 @@ std::vector<Contender> make_contenders() {
                                 .least = 0.0,
                                 .sweep = {1, 3, 10, 30, 100, 300, 1000}}},
                      .settings = {}});
+    table.push_back({.name = "apsl_defaults",
+                     .title = "Area preserving, the library's defaults",
+                     .citation = han,
+                     .kind = ContenderKind::ours,
+                     .knobs = {},
+                     .settings = {{"strain_limiting", nlohmann::json::object()}}});
     table.push_back(
         {.name = "apsl",
          .title = "Area preserving",

@@ -30,6 +30,8 @@ OpenClTime opencl_time() {
 
 }  // namespace apsl::bench
 
+// Shown, so that a shared library too calls these.
+#pragma GCC visibility push(default)
 extern "C" {
 
 cl_program CL_API_CALL clCreateProgramWithSource(cl_context context, cl_uint count, const char** strings,
@@ -59,3 +61,4 @@ cl_mem CL_API_CALL clCreateBuffer(cl_context context, cl_mem_flags flags, size_t
     return timed<decltype(clCreateBuffer)>(spent.buffers, "clCreateBuffer", context, flags, size, host, status);
 }
 }
+#pragma GCC visibility pop

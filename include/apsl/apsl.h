@@ -2,12 +2,14 @@
 #ifndef APSL_APSL_H
 #define APSL_APSL_H
 
-/* The C interface: the objects of strain_limiter.hpp and topology.hpp behind handles, where their full contract is.
+/** @file
+ * The C interface: the objects of strain_limiter.hpp and topology.hpp behind handles, where their full contract is.
  *
  * Functions that can fail return an apsl_result, 0 for success; apsl_last_error() then says in one line what was wrong.
  * Nothing is thrown. One limiter per thread; a topology may be shared. */
 
 #include <apsl/export.hpp>
+#include <apsl/version.hpp>
 
 #include <CL/cl.h>
 
@@ -18,159 +20,171 @@
 extern "C" {
 #endif
 
+/** What a function that can fail returns. */
 typedef enum apsl_result {
     APSL_SUCCESS = 0,
-    APSL_ERROR_INVALID_ARGUMENT = 1, /* a parameter, option or size out of its range, or a null pointer */
-    APSL_ERROR_INVALID_MESH = 2,     /* triangles that no topology can be built from */
-    APSL_ERROR_OPENCL = 3,           /* an OpenCL call failed */
-    APSL_ERROR_KERNEL_BUILD = 4,     /* a kernel did not compile */
-    APSL_ERROR_UNSUPPORTED = 5,      /* the device cannot do what was asked */
-    APSL_ERROR_OUT_OF_MEMORY = 6,    /* on the host */
-    APSL_ERROR_INTERNAL = 7          /* none of these: an error in apsl */
+    APSL_ERROR_INVALID_ARGUMENT = 1, /**< a parameter, option or size out of its range, or a null pointer */
+    APSL_ERROR_INVALID_MESH = 2,     /**< triangles that no topology can be built from */
+    APSL_ERROR_OPENCL = 3,           /**< an OpenCL call failed */
+    APSL_ERROR_KERNEL_BUILD = 4,     /**< a kernel did not compile */
+    APSL_ERROR_UNSUPPORTED = 5,      /**< the device cannot do what was asked */
+    APSL_ERROR_OUT_OF_MEMORY = 6,    /**< on the host */
+    APSL_ERROR_INTERNAL = 7          /**< none of these: an error in apsl */
 } apsl_result;
 
+/** apsl::Matrix: which matrix couples the pressures. */
 typedef enum apsl_matrix { APSL_MATRIX_CONSISTENT = 0, APSL_MATRIX_PRINTED = 1 } apsl_matrix;
+/** apsl::Apply: how that matrix is applied inside Conjugate Gradient. */
 typedef enum apsl_apply { APSL_APPLY_ASSEMBLED_CSR = 0, APSL_APPLY_MATRIX_FREE = 1 } apsl_apply;
 
-/* How a call is divided over the device. */
+/** How a call is divided over the device. */
 typedef enum apsl_execution {
-    APSL_EXECUTION_AUTOMATIC = 0,   /* one group where the largest cloth is small, many otherwise */
-    APSL_EXECUTION_MANY_GROUPS = 1, /* each step of the filter is a launch over all of a cloth */
-    APSL_EXECUTION_ONE_GROUP = 2    /* one work-group a cloth, the whole call in one launch; consistent, matrix-free */
+    APSL_EXECUTION_AUTOMATIC = 0,   /**< one group where the largest cloth is small, many otherwise */
+    APSL_EXECUTION_MANY_GROUPS = 1, /**< each step of the filter is a launch over all of a cloth */
+    APSL_EXECUTION_ONE_GROUP = 2 /**< one work-group a cloth, the whole call in one launch; consistent, matrix-free */
 } apsl_execution;
 
-/* How a call ended, apsl_limiter_stats.status. */
+/** How a call ended, apsl_limiter_stats.status. */
 typedef enum apsl_limiter_status {
-    APSL_LIMITER_OK = 0,
-    APSL_LIMITER_NOT_CONVERGED = 1, /* a solve used all its iterations; the best state reached stands */
-    APSL_LIMITER_WORSENED = 2,      /* area change rose; of start and end the state with less RMS stands */
-    APSL_LIMITER_DIVERGED = 3       /* not finite, going in or on the way: velocities are as they were given */
+    APSL_LIMITER_OK = 0,            /**< every solve met its tolerance */
+    APSL_LIMITER_NOT_CONVERGED = 1, /**< a solve used all its iterations; the best state reached stands */
+    APSL_LIMITER_WORSENED = 2,      /**< area change rose; of start and end the state with less RMS stands */
+    APSL_LIMITER_DIVERGED = 3       /**< not finite, going in or on the way: velocities are as they were given */
 } apsl_limiter_status;
 
-/* What apsl_limiter_stats.offender_index counts. */
+/** What apsl_limiter_stats.offender_index counts. */
 typedef enum apsl_limiter_offender {
-    APSL_OFFENDER_NONE = 0,
-    APSL_OFFENDER_VERTEX = 1,  /* position, velocity or inverse mass is not finite, or the mass is negative */
-    APSL_OFFENDER_TRIANGLE = 2 /* rest area is negative or, like alpha or the area it came to, not finite */
+    APSL_OFFENDER_NONE = 0,    /**< nothing */
+    APSL_OFFENDER_VERTEX = 1,  /**< position, velocity or inverse mass is not finite, or the mass is negative */
+    APSL_OFFENDER_TRIANGLE = 2 /**< rest area is negative or, like alpha or the area it came to, not finite */
 } apsl_limiter_offender;
 
-/* apsl::ProgramBinaryUse: what became of a program binary. Unless taken, the program was built from source. */
+/** apsl::ProgramBinaryUse: what became of a program binary. Unless taken, the program was built from source. */
 typedef enum apsl_program_binary_use {
-    APSL_PROGRAM_BINARY_NONE_GIVEN = 0,
-    APSL_PROGRAM_BINARY_TAKEN = 1,
-    APSL_PROGRAM_BINARY_NOT_A_BINARY = 2,     /* not one of apsl's, cut short, or of another format version */
-    APSL_PROGRAM_BINARY_OTHER_PROGRAM = 3,    /* of other kernels, options, device or driver */
-    APSL_PROGRAM_BINARY_DAMAGED = 4,          /* its bytes have changed */
-    APSL_PROGRAM_BINARY_REFUSED_BY_DRIVER = 5 /* sound as far as apsl can tell */
+    APSL_PROGRAM_BINARY_NONE_GIVEN = 0,       /**< no bytes */
+    APSL_PROGRAM_BINARY_TAKEN = 1,            /**< nothing was compiled here */
+    APSL_PROGRAM_BINARY_NOT_A_BINARY = 2,     /**< not one of apsl's, cut short, or of another format version */
+    APSL_PROGRAM_BINARY_OTHER_PROGRAM = 3,    /**< of other kernels, options, device or driver */
+    APSL_PROGRAM_BINARY_DAMAGED = 4,          /**< its bytes have changed */
+    APSL_PROGRAM_BINARY_REFUSED_BY_DRIVER = 5 /**< sound as far as apsl can tell */
 } apsl_program_binary_use;
 
-/* From where the sub-steps of a call correct. */
+/** From where the sub-steps of a call correct. */
 typedef enum apsl_stepping {
-    APSL_STEPPING_AUTOMATIC = 0,  /* small steps from 20 sub-steps up */
-    APSL_STEPPING_WHOLE_STEP = 1, /* from the end of the time step, as Algorithm 1 */
-    APSL_STEPPING_SMALL_STEPS = 2 /* each moves on by an equal part of the time step; the last only corrects */
+    APSL_STEPPING_AUTOMATIC = 0,  /**< small steps from 20 sub-steps up */
+    APSL_STEPPING_WHOLE_STEP = 1, /**< from the end of the time step, as Algorithm 1 */
+    APSL_STEPPING_SMALL_STEPS = 2 /**< each moves on by an equal part of the time step; the last only corrects */
 } apsl_stepping;
 
+/** apsl::Topology behind a handle: immutable, may be shared between limiters and threads. */
 typedef struct apsl_topology apsl_topology;
+/** apsl::StrainLimiter behind a handle: one thread at a time. */
 typedef struct apsl_limiter apsl_limiter;
 
-/* apsl::Options: what is compiled in. Begin with apsl_limiter_default_options(). */
+/** apsl::Options: what is compiled in. Begin with apsl_limiter_default_options(). */
 typedef struct apsl_limiter_options {
-    int32_t matrix;                      /* apsl_matrix */
-    int32_t apply;                       /* apsl_apply */
-    int32_t execution;                   /* apsl_execution */
-    uint32_t work_group_size;            /* a power of two; 0 takes what suits the device */
-    uint32_t position_stride;            /* floats from one vertex to the next, >= 3 */
-    uint32_t velocity_stride;            /* likewise */
-    int32_t regularization_per_triangle; /* not 0: a regularization buffer is given with every call */
-    uint32_t kept_pressures;             /* sub-steps whose pressures the next call's solves start from */
+    int32_t matrix;                      /**< apsl_matrix */
+    int32_t apply;                       /**< apsl_apply */
+    int32_t execution;                   /**< apsl_execution */
+    uint32_t work_group_size;            /**< a power of two; 0 takes what suits the device */
+    uint32_t position_stride;            /**< floats from one vertex to the next, >= 3 */
+    uint32_t velocity_stride;            /**< likewise */
+    int32_t regularization_per_triangle; /**< not 0: a regularization buffer is given with every call */
+    uint32_t kept_pressures;             /**< sub-steps whose pressures the next call's solves start from */
 } apsl_limiter_options;
 
-/* apsl::Parameters: what may change from call to call. Begin with apsl_limiter_default_parameters(). */
+/** apsl::Parameters: what may change from call to call. Begin with apsl_limiter_default_parameters(). */
 typedef struct apsl_limiter_parameters {
-    float time_step;             /* s, > 0 */
-    float regularization;        /* alpha >= 1, multiplies diag(G) */
-    int32_t sub_steps;           /* >= 0 */
-    float target_area_change;    /* |A - A0| / A0 >= 0 at which no further sub-step is done */
-    float tolerance;             /* in [0, 1), of a solve's residual */
-    int32_t max_iterations;      /* >= 1, of a solve */
-    int32_t adaptive_iterations; /* 0: alpha stays as given; else more iterations than this raise it */
-    float first_regularization;  /* 0: alpha is the same in every sub-step; else > 1, that of the first */
-    int32_t stepping;            /* apsl_stepping */
+    float time_step;             /**< s, > 0 */
+    float regularization;        /**< alpha >= 1, multiplies diag(G) */
+    int32_t sub_steps;           /**< >= 0 */
+    float target_area_change;    /**< |A - A0| / A0 >= 0 at which no further sub-step is done */
+    float tolerance;             /**< in [0, 1), of a solve's residual */
+    int32_t max_iterations;      /**< >= 1, of a solve */
+    int32_t adaptive_iterations; /**< 0: alpha stays as given; else more iterations than this raise it */
+    float first_regularization;  /**< 0: alpha is the same in every sub-step; else > 1, that of the first */
+    int32_t stepping;            /**< apsl_stepping */
 } apsl_limiter_parameters;
 
-/* apsl::BufferView: 32-bit floats in a buffer of the caller's. */
+/** apsl::BufferView: 32-bit floats in a buffer of the caller's. */
 typedef struct apsl_buffer_view {
-    cl_mem buffer;
-    size_t offset; /* bytes, a multiple of 4 */
+    cl_mem buffer; /**< the caller's; must live until the calls that use it complete */
+    size_t offset; /**< bytes, a multiple of 4 */
 } apsl_buffer_view;
 
-/* apsl::Buffers; several cloths follow one another. */
+/** apsl::Buffers; several cloths follow one another. */
 typedef struct apsl_limiter_buffers {
-    apsl_buffer_view positions;      /* m, [V] with position_stride; the start of the step; only read */
-    apsl_buffer_view velocities;     /* m/s, [V] with velocity_stride; in and out */
-    apsl_buffer_view inverse_masses; /* 1/kg, [V], 0 pins a vertex */
-    apsl_buffer_view rest_areas;     /* m2, [T] */
-    apsl_buffer_view regularization; /* alpha, [T]; only with regularization_per_triangle, else a null buffer */
+    apsl_buffer_view positions;      /**< m, [V] with position_stride; the start of the step; only read */
+    apsl_buffer_view velocities;     /**< m/s, [V] with velocity_stride; in and out */
+    apsl_buffer_view inverse_masses; /**< 1/kg, [V], 0 pins a vertex */
+    apsl_buffer_view rest_areas;     /**< m2, [T] */
+    apsl_buffer_view regularization; /**< alpha, [T]; only with regularization_per_triangle, else a null buffer */
 } apsl_limiter_buffers;
 
-/* apsl::Stats: what a call did to one cloth. */
+/** apsl::Stats: what a call did to one cloth. */
 typedef struct apsl_limiter_stats {
-    int32_t sub_steps;
-    int32_t cg_iterations;
-    float residual;                /* greatest relative residual at the end of a solve */
-    float max_area_change;         /* max |A - A0| / A0 of what is left behind */
-    float rms_area_change;         /* weighted with A0 */
-    float initial_max_area_change; /* both at x + dt v */
-    float initial_rms_area_change;
-    int32_t status;          /* apsl_limiter_status */
-    int32_t offender;        /* apsl_limiter_offender; none unless status is diverged */
-    uint32_t offender_index; /* the first one, within its cloth */
+    int32_t sub_steps;             /**< solves done */
+    int32_t cg_iterations;         /**< over all of them */
+    float residual;                /**< greatest relative residual at the end of a solve */
+    float max_area_change;         /**< max |A - A0| / A0 of what is left behind */
+    float rms_area_change;         /**< weighted with A0 */
+    float initial_max_area_change; /**< the greatest at x + dt v */
+    float initial_rms_area_change; /**< and the weighted RMS there */
+    int32_t status;                /**< apsl_limiter_status */
+    int32_t offender;              /**< apsl_limiter_offender; none unless status is diverged */
+    uint32_t offender_index;       /**< the first one, within its cloth */
 } apsl_limiter_stats;
 
-/* What went wrong in this thread's last failed call: one line, empty before the first. Valid until the next one. */
+/** What went wrong in this thread's last failed call: one line, empty before the first. Valid until the next one. */
 APSL_API const char* apsl_last_error(void);
 
+/** The library's version as it runs, "major.minor.patch"; the headers' is APSL_VERSION_MAJOR and so on. */
+APSL_API const char* apsl_version(void);
+/** The same as one number, to compare with APSL_VERSION_NUMBER. */
+APSL_API int32_t apsl_version_number(void);
+
+/** apsl::Options as they are without a choice. */
 APSL_API apsl_limiter_options apsl_limiter_default_options(void);
+/** apsl::Parameters as they are without a choice. */
 APSL_API apsl_limiter_parameters apsl_limiter_default_parameters(void);
 
-/* triangles: 3 vertex indices each, counter-clockwise. *topology is null where this fails. */
+/** triangles: 3 vertex indices each, counter-clockwise. *topology is null where this fails. */
 APSL_API apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_count, size_t vertex_count,
                                           apsl_topology** topology);
-/* Null is allowed. Limiters made from it live on. */
+/** Null is allowed. Limiters made from it live on. */
 APSL_API void apsl_topology_destroy(apsl_topology* topology);
 
-/* One cloth or many. options may be null: the defaults. *limiter is null where this fails. */
+/** One cloth or many. options may be null: the defaults. *limiter is null where this fails. */
 APSL_API apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
                                          size_t cloth_count, const apsl_limiter_options* options,
                                          apsl_limiter** limiter);
-/* The same, from what apsl_limiter_program_binary gave: size bytes, tried in place of compiling. */
+/** The same, from what apsl_limiter_program_binary gave: size bytes, tried in place of compiling. */
 APSL_API apsl_result apsl_limiter_create_from_binary(cl_context context, cl_device_id device,
                                                      const apsl_topology* const* cloths, size_t cloth_count,
                                                      const apsl_limiter_options* options, const void* binary,
                                                      size_t size, apsl_limiter** limiter);
-/* Null is allowed. */
+/** Null is allowed. */
 APSL_API void apsl_limiter_destroy(apsl_limiter* limiter);
 
-/* Device memory it holds; 0 for null. */
+/** Device memory it holds; 0 for null. */
 APSL_API size_t apsl_limiter_scratch_bytes(const apsl_limiter* limiter);
 
-/* The compiled program; *size is its bytes, 0 where the driver gives none. Where binary is null only the size is asked
+/** The compiled program; *size is its bytes, 0 where the driver gives none. Where binary is null only the size is asked
  * for; else capacity bytes are there for it, at least *size. Best asked for after a call has completed. */
 APSL_API apsl_result apsl_limiter_program_binary(const apsl_limiter* limiter, void* binary, size_t capacity,
                                                  size_t* size);
-/* An apsl_program_binary_use; none given for null. */
+/** An apsl_program_binary_use; none given for null. */
 APSL_API apsl_program_binary_use apsl_limiter_program_binary_use(const apsl_limiter* limiter);
 
-/* Queues one call; parameter_count is 1 or the number of cloths. The event completes with the call and is the caller's
+/** Queues one call; parameter_count is 1 or the number of cloths. The event completes with the call and is the caller's
  * to release; where event is null there is none. */
 APSL_API apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue,
                                           const apsl_limiter_buffers* buffers,
                                           const apsl_limiter_parameters* parameters, size_t parameter_count,
                                           cl_uint wait_count, const cl_event* wait_list, cl_event* event);
 
-/* Queues a non-blocking read of the last call's statistics, stats_count the number of cloths. stats must live until the
- * event, which must not be null, completes. */
+/** Queues a non-blocking read of the last call's statistics, stats_count the number of cloths. stats must live until
+ * the event, which must not be null, completes. */
 APSL_API apsl_result apsl_limiter_read_stats(const apsl_limiter* limiter, cl_command_queue queue,
                                              apsl_limiter_stats* stats, size_t stats_count, cl_uint wait_count,
                                              const cl_event* wait_list, cl_event* event);

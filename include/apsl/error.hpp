@@ -21,11 +21,13 @@ enum class ErrorCode : std::int32_t {
 /// Every error the library throws: one line that names what, where, and what was expected.
 class APSL_API Error : public std::runtime_error {
 public:
+    /// opencl_code: the failed call's status. build_log: what the compiler said, for kernel_build.
     Error(ErrorCode code, const std::string& what_was_wrong, std::int32_t opencl_code = 0, std::string build_log = {});
     ~Error() override;
-    Error(const Error&) = default;
-    Error& operator=(const Error&) = default;
+    Error(const Error&) = default;             ///< copies all of it
+    Error& operator=(const Error&) = default;  ///< likewise
 
+    /// The kind of mistake.
     ErrorCode code() const noexcept { return code_; }
     /// The OpenCL status of the failed call, 0 where none was involved.
     std::int32_t opencl_code() const noexcept { return opencl_code_; }

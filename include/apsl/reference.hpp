@@ -33,8 +33,8 @@ public:
     explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix = Matrix::consistent,
                                 std::uint32_t kept_pressures = 0);
     ~BasicStrainLimiter();
-    BasicStrainLimiter(BasicStrainLimiter&&) noexcept;
-    BasicStrainLimiter& operator=(BasicStrainLimiter&&) noexcept;
+    BasicStrainLimiter(BasicStrainLimiter&&) noexcept;  ///< what was moved from may only be assigned to or destroyed
+    BasicStrainLimiter& operator=(BasicStrainLimiter&&) noexcept;  ///< likewise
 
     /// Bytes held between calls.
     std::size_t scratch_bytes() const;
@@ -50,6 +50,7 @@ private:
     std::unique_ptr<Implementation> implementation_;
 };
 
+/// The reference itself, in double precision.
 using StrainLimiter = BasicStrainLimiter<double>;
 
 extern template class BasicStrainLimiter<double>;

@@ -7,7 +7,7 @@ namespace apsl {
 
 /// How a filter call ended.
 enum class Status : std::int32_t {
-    ok = 0,
+    ok = 0,             ///< every solve met its tolerance
     not_converged = 1,  ///< at least one solve used all its iterations; the best state reached stands
     /// The greatest or the RMS area change ended above what it was at x̃ + Δt ṽ. Of the two states the one with less RMS
     /// stands: where that is the first, the velocities are as they were given.
@@ -17,7 +17,7 @@ enum class Status : std::int32_t {
 
 /// What Stats::offender_index counts.
 enum class Offender : std::int32_t {
-    none = 0,
+    none = 0,      ///< nothing
     vertex = 1,    ///< its position, velocity or x̃ + Δt ṽ is not finite, or its inverse mass is not or is negative
     triangle = 2,  ///< its rest area is negative or, like its α or the area it came to, not finite
 };
@@ -29,11 +29,11 @@ struct Stats {
     float residual;                 ///< greatest ‖r‖ / ‖b‖ at the end of a solve, norm as in Parameters::tolerance
     float max_area_change;          ///< max |A − A⁰| / A⁰ of what is left behind
     float rms_area_change;          ///< root of the mean of its squares, weighted with A⁰, as mass is
-    float initial_max_area_change;  ///< both at x̃ + Δt ṽ
-    float initial_rms_area_change;
-    Status status;
-    Offender offender;             ///< other than none only where status is diverged
-    std::uint32_t offender_index;  ///< the first one, within its cloth
+    float initial_max_area_change;  ///< the greatest at x̃ + Δt ṽ, before the first sub-step
+    float initial_rms_area_change;  ///< and the weighted RMS there
+    Status status;                  ///< how the call ended for this cloth
+    Offender offender;              ///< other than none only where status is diverged
+    std::uint32_t offender_index;   ///< the first one, within its cloth
 };
 static_assert(sizeof(Stats) == 40);
 

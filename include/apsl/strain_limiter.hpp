@@ -20,15 +20,15 @@ namespace apsl {
 
 /// What is compiled into the kernels of a StrainLimiter.
 struct Options {
-    Matrix matrix = Matrix::consistent;
-    Apply apply = Apply::matrix_free;
+    Matrix matrix = Matrix::consistent;  ///< what couples the pressures
+    Apply apply = Apply::matrix_free;    ///< how it is applied
     /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU kept_pressures 0.
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;
     /// Floats from one vertex to the next in positions and in velocities, ≥ 3.
     std::uint32_t position_stride = 3;
-    std::uint32_t velocity_stride = 3;
+    std::uint32_t velocity_stride = 3;  ///< likewise
     /// A regularization buffer is given with every call.
     bool regularization_per_triangle = false;
     /// The pressures of so many sub-steps of a call (4 B a triangle each; later sub-steps share the last) are kept, and
@@ -40,8 +40,8 @@ struct Options {
 
 /// A place in a caller's buffer. The element stride is fixed in Options.
 struct BufferView {
-    cl_mem buffer = nullptr;
-    std::size_t offset = 0;  ///< bytes, a multiple of 4
+    cl_mem buffer = nullptr;  ///< the caller's; must live until the calls that use it complete
+    std::size_t offset = 0;   ///< bytes, a multiple of 4
 };
 
 /// 32-bit floats in the caller's buffers. With several cloths their vertices and triangles follow one another in the
@@ -56,8 +56,8 @@ struct Buffers {
 
 /// What became of the program binary given to a StrainLimiter. Unless taken, the program was built from source.
 enum class ProgramBinaryUse : std::int32_t {
-    none_given = 0,
-    taken = 1,
+    none_given = 0,         ///< no bytes
+    taken = 1,              ///< nothing was compiled here
     not_a_binary = 2,       ///< not from StrainLimiter::program_binary, cut short, or of another format version
     other_program = 3,      ///< of other kernels, options, device or driver
     damaged = 4,            ///< its bytes have changed
@@ -66,9 +66,9 @@ enum class ProgramBinaryUse : std::int32_t {
 
 /// One kernel's share of the profiled commands (see StrainLimiter::profile).
 struct KernelTime {
-    std::string name;
-    std::int64_t launches = 0;
-    double seconds = 0.0;  ///< on the device, from the profiling events
+    std::string name;           ///< of the kernel, as in kernels/
+    std::int64_t launches = 0;  ///< since the last call of profile()
+    double seconds = 0.0;       ///< on the device, from the profiling events
 };
 
 /// The filter of Algorithm 1 on an OpenCL device, inside the caller's context, queue and buffers.
@@ -84,14 +84,16 @@ public:
     /// `program_binary`: what program_binary() gave, tried in place of compiling; see program_binary_use().
     StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
                   const Options& options = {}, std::span<const std::byte> program_binary = {});
+    /// The same for one cloth.
     StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
                   const Options& options = {}, std::span<const std::byte> program_binary = {});
     ~StrainLimiter();
-    StrainLimiter(StrainLimiter&&) noexcept;
-    StrainLimiter& operator=(StrainLimiter&&) noexcept;
+    StrainLimiter(StrainLimiter&&) noexcept;             ///< what was moved from may only be assigned to or destroyed
+    StrainLimiter& operator=(StrainLimiter&&) noexcept;  ///< likewise
 
     /// Device memory this object holds, adjacency included.
     std::size_t scratch_bytes() const noexcept;
+    /// The cloths it was made for.
     std::size_t cloth_count() const noexcept;
     /// The options as resolved for the device (no zeros left).
     const Options& options() const noexcept;
@@ -100,6 +102,7 @@ public:
     /// device and driver. May take as long as compiling did. Best asked for after a call has completed: some drivers
     /// compile at the first launch. Empty where the driver gives none.
     std::vector<std::byte> program_binary() const;
+    /// What became of the binary given to the constructor.
     ProgramBinaryUse program_binary_use() const noexcept;
 
     /// Queues one filter call. `parameters` holds one entry for every cloth, or a single one for all.
@@ -107,6 +110,7 @@ public:
     /// Throws Error(invalid_argument) before anything is queued, Error(opencl) where a call fails.
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers,
                                    std::span<const Parameters> parameters, std::span<const cl_event> wait_list = {});
+    /// The same with one set of parameters for all cloths.
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers, const Parameters& parameters,
                                    std::span<const cl_event> wait_list = {});
 

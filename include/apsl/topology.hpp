@@ -42,8 +42,11 @@ public:
     /// a triangle that names a vertex twice, or more than 2³² / 3 triangles; the message names the triangle.
     static std::shared_ptr<const Topology> build(std::span<const Triangle> triangles, std::size_t vertex_count);
 
+    /// As given to build, isolated vertices included: V.
     std::size_t vertex_count() const noexcept { return vertex_count_; }
+    /// T.
     std::size_t triangle_count() const noexcept { return triangles_.size(); }
+    /// As given to build. [T]; like every span here it lives as long as the topology.
     std::span<const Triangle> triangles() const noexcept { return triangles_; }
 
     /// Corners at vertex v, ascending: corners()[corner_offsets()[v]] up to corner_offsets()[v + 1].
@@ -55,8 +58,11 @@ public:
     std::span<const std::uint32_t> edge_corner_offsets() const noexcept { return edge_corner_offsets_; }  ///< [E + 1]
     std::span<const Corner> edge_corners() const noexcept { return edge_corners_; }                       ///< [3T]
 
+    /// Edges of one triangle.
     std::size_t boundary_edge_count() const noexcept { return boundary_edge_count_; }
+    /// Edges of three triangles or more.
     std::size_t non_manifold_edge_count() const noexcept { return non_manifold_edge_count_; }
+    /// Vertices in no triangle.
     std::size_t isolated_vertex_count() const noexcept { return isolated_vertex_count_; }
     /// Parts of the mesh that share no vertex; isolated vertices not counted.
     std::size_t component_count() const noexcept { return component_count_; }

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "run/make_mesh.hpp"
 
+#include "run/fixed_sequence.hpp"
+
 #include <cmath>
 #include <numbers>
-#include <random>
 
 namespace apsl::scenes {
 namespace {
-
-// The standard fixes the sequence of mt19937 but not what its distributions make of it, so the scaling is ours: the
-// same scene gives the same mesh with every standard library.
-class FixedSequence {
-public:
-    /// In [−1, 1).
-    double symmetric() { return static_cast<double>(generator_()) * 0x1p-31 - 1.0; }
-    bool coin() { return (generator_() & 0x80000000u) != 0; }
-
-private:
-    std::mt19937 generator_{20150923u};
-};
 
 class DiagonalChoice {
 public:

@@ -3,11 +3,13 @@
 
 #include "run/input_error.hpp"
 #include "run/override_scene.hpp"
+#include "run/parse_vertices.hpp"
 #include "run/scene_object.hpp"
 
 #include <apsl/error.hpp>
 
 #include <fstream>
+#include <iterator>
 #include <limits>
 
 namespace apsl::scenes {
@@ -15,6 +17,7 @@ namespace {
 
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kMaxKeptPressures = 1000;
+constexpr int kMaxDepth = 64;
 
 std::array<std::uint32_t, 2> counts(SceneObject& object, const std::string& key,
                                     const std::array<std::uint32_t, 2>& fallback,
@@ -86,50 +89,12 @@ MeshSource parse_mesh(SceneObject object, const std::filesystem::path& folder) {
     return source;
 }
 
-PinMotion parse_motion(SceneObject object) {
-    PinMotion motion;
-    motion.start = object.number("start", motion.start, Range::at_least(0.0));
-    motion.stop = object.number("stop", motion.stop, Range::at_least(motion.start));
-    const std::string kind = object.only_one_of({"rotate", "translate"});
-    SceneObject path(object.find(kind));
-    if (kind == "rotate") {
-        PinRotation rotation;
-        rotation.axis = path.vector3("axis", rotation.axis);
-        rotation.degrees_per_second = path.number("degrees_per_second", rotation.degrees_per_second);
-        if (path.has("center")) rotation.center = path.vector3("center", {});
-        if (rotation.axis == std::array<double, 3>{}) path.find("axis").fail("expected an axis of any length but 0");
-        motion.path = rotation;
-    } else {
-        motion.path = PinTranslation{path.vector3("velocity", {})};
-    }
-    path.refuse_other_keys();
-    return motion;
-}
-
-Pin parse_pin(SceneObject object) {
-    Pin pin;
-    if (object.has("motion")) pin.motion = parse_motion(SceneObject(object.find("motion")));
-    const std::string kind = object.only_one_of({"vertices", "corners", "box"});
-    const SceneValue value = object.find(kind);
-    if (kind == "vertices") {
-        PinnedVertices selection;
-        for (const SceneValue& vertex : value.entries()) {
-            selection.vertices.push_back(static_cast<std::uint32_t>(vertex.integer(0, kMaxCount)));
-        }
-        pin.selection = std::move(selection);
-    } else if (kind == "corners") {
-        PinnedCorners selection;
-        for (const SceneValue& corner : value.entries()) selection.corners.push_back(corner.text());
-        pin.selection = std::move(selection);
-    } else {
-        SceneObject box_object(value);
-        PinnedBox box;
-        box.min = box_object.vector3("min", box.min);
-        box.max = box_object.vector3("max", box.max);
-        box_object.refuse_other_keys();
-        pin.selection = box;
-    }
-    return pin;
+Start parse_start(SceneObject object) {
+    Start start;
+    start.scale = object.vector3("scale", start.scale);
+    start.random = object.number("random", start.random, Range::at_least(0.0));
+    object.refuse_other_keys();
+    return start;
 }
 
 Integrator parse_integrator(SceneObject object) {
@@ -255,6 +220,12 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     if (object.has("pins")) {
         for (const SceneValue& pin : object.find("pins").entries()) scene.pins.push_back(parse_pin(SceneObject(pin)));
     }
+    if (object.has("masses")) {
+        for (const SceneValue& masses : object.find("masses").entries()) {
+            scene.masses.push_back(parse_mass_factor(SceneObject(masses)));
+        }
+    }
+    if (object.has("start")) scene.start = parse_start(SceneObject(object.find("start")));
     scene.gravity = object.vector3("gravity", scene.gravity);
     scene.time_step = object.number("time_step", scene.time_step, Range::above(0.0));
     scene.steps_per_frame = static_cast<int>(object.integer("steps_per_frame", scene.steps_per_frame, 1, kMaxCount));
@@ -272,21 +243,31 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     return scene;
 }
 
-nlohmann::ordered_json read_scene_document(const std::filesystem::path& file, std::span<const std::string> overrides) {
-    if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such scene file");
-    std::ifstream stream(file);
-    if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
-    nlohmann::ordered_json document;
+nlohmann::ordered_json parse_scene_text(std::string_view text, const std::string& file) {
+    // What comes after is recursive: text nested deep enough would use up the stack.
+    const auto check_depth = [&](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
+        if (depth > kMaxDepth)
+            throw InputError(file + ": nested more than " + std::to_string(kMaxDepth) + " deep, expected a scene");
+        return true;
+    };
     try {
-        document = nlohmann::ordered_json::parse(stream);
+        return nlohmann::ordered_json::parse(text, check_depth);
     } catch (const nlohmann::json::exception& error) {
         std::string reason = error.what();  // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
         if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
         for (char& letter : reason) {
             if (letter == '\n' || letter == '\r') letter = ' ';
         }
-        throw InputError(file.string() + ": not valid JSON: " + reason);
+        throw InputError(file + ": not valid JSON: " + reason);
     }
+}
+
+nlohmann::ordered_json read_scene_document(const std::filesystem::path& file, std::span<const std::string> overrides) {
+    if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such scene file");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    nlohmann::ordered_json document = parse_scene_text(text, file.string());
     for (const std::string& assignment : overrides) override_scene(document, assignment);
     return document;
 }

@@ -4,6 +4,7 @@
 #include "run/input_error.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace apsl::scenes {
 
@@ -18,11 +19,12 @@ void add_polygon(Mesh& mesh, std::span<const std::int64_t> vertices, const std::
             throw InputError(where + "vertex " + std::to_string(vertices[k]) + " is out of range, the file has " +
                              std::to_string(vertex_count) + " vertices");
         }
-        if (std::find(vertices.begin(), vertices.begin() + static_cast<std::ptrdiff_t>(k), vertices[k]) !=
-            vertices.begin() + static_cast<std::ptrdiff_t>(k)) {
-            throw InputError(where + "names vertex " + std::to_string(vertices[k]) + " twice");
-        }
     }
+    // Sorted, so that a polygon of any length takes no longer to check than to read.
+    std::vector<std::int64_t> sorted(vertices.begin(), vertices.end());
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) throw InputError(where + "names vertex " + std::to_string(*twice) + " twice");
     for (std::size_t k = 1; k + 1 < vertices.size(); ++k) {
         mesh.triangles.push_back({static_cast<std::uint32_t>(vertices[0]), static_cast<std::uint32_t>(vertices[k]),
                                   static_cast<std::uint32_t>(vertices[k + 1])});

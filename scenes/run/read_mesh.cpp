@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 namespace apsl::scenes {
@@ -31,19 +32,16 @@ void scale_to_height(Mesh& mesh, double height, const std::string& file) {
 
 Mesh read_mesh(const std::filesystem::path& file, std::optional<double> height) {
     if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such mesh file");
-    if (!std::ifstream(file)) throw InputError(file.string() + ": cannot be opened for reading");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
 
     std::string extension = file.extension().string();
     for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    Mesh mesh;
-    if (extension == ".obj") {
-        mesh = read_obj(file);
-    } else if (extension == ".ply") {
-        mesh = read_ply(file);
-    } else {
+    if (extension != ".obj" && extension != ".ply") {
         throw InputError(file.string() + ": unknown kind of mesh file, expected .obj or .ply");
     }
-
+    const std::string contents{std::istreambuf_iterator<char>(stream), {}};
+    Mesh mesh = extension == ".obj" ? read_obj(contents, file.string()) : read_ply(contents, file.string());
     if (mesh.positions.empty()) throw InputError(file.string() + ": has no vertices");
     if (mesh.triangles.empty()) throw InputError(file.string() + ": has no faces");
     if (height) scale_to_height(mesh, *height, file.string());

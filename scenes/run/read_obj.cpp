@@ -3,77 +3,55 @@
 
 #include "run/input_error.hpp"
 #include "run/polygons.hpp"
+#include "run/words.hpp"
 
-#include <tiny_obj_loader.h>
-
-#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <string_view>
+#include <cstdint>
 #include <vector>
 
 namespace apsl::scenes {
 namespace {
 
-std::string_view without_leading_blanks(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r");
-    return first == std::string_view::npos ? std::string_view{} : text.substr(first);
+void add_vertex(Mesh& mesh, std::string_view coordinates, const std::string& place, std::string_view line) {
+    for (int axis = 0; axis < 3; ++axis) {
+        double coordinate = 0.0;
+        if (!parse_number(take_word(coordinates), coordinate) || !std::isfinite(coordinate)) {
+            throw InputError(place + "expected three finite coordinates after v, got " + quoted(line));
+        }
+        mesh.positions.push_back(coordinate);
+    }
 }
 
-// tinyobjloader takes a coordinate that it cannot read, "nan" among them, for 0. So look at them first.
-void check_coordinates(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    std::string line;
-    for (std::size_t number = 1; std::getline(stream, line); ++number) {
-        std::string_view rest = without_leading_blanks(line);
-        if (!rest.starts_with("v ") && !rest.starts_with("v\t")) continue;
-        rest.remove_prefix(1);
-        for (int axis = 0; axis < 3; ++axis) {
-            rest = without_leading_blanks(rest);
-            if (rest.starts_with('+')) rest.remove_prefix(1);
-            double coordinate = 0.0;
-            const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), coordinate);
-            const bool ends_well = end == rest.data() + rest.size() || *end == ' ' || *end == '\t' || *end == '\r';
-            if (error != std::errc{} || !ends_well || !std::isfinite(coordinate)) {
-                throw InputError(file.string() + ":" + std::to_string(number) +
-                                 ": expected three finite coordinates after v, got \"" +
-                                 std::string(without_leading_blanks(line)) + "\"");
-            }
-            rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-        }
+// v, v/vt, v//vn or v/vt/vn: only v is looked at. Counted from 1, or back from the last vertex before the line.
+std::int64_t vertex_index(std::string_view corner, const Mesh& mesh, const std::string& place, std::string_view line) {
+    std::int64_t number = 0;
+    if (!parse_number(corner.substr(0, corner.find('/')), number) || number == 0) {
+        throw InputError(place + "expected vertex numbers from 1, or from -1 back, after f, got " + quoted(line));
     }
+    return number > 0 ? number - 1 : static_cast<std::int64_t>(mesh.vertex_count()) + number;
 }
 
 }  // namespace
 
-Mesh read_obj(const std::filesystem::path& file) {
-    check_coordinates(file);
-
-    tinyobj::ObjReaderConfig config;
-    config.triangulate = false;  // fans are cut here, alike for all formats
-    config.vertex_color = false;
-    tinyobj::ObjReader reader;
-    if (!reader.ParseFromFile(file.string(), config)) {
-        std::string reason = reader.Error();
-        reason.erase(reason.find_last_not_of(" \n\r") + 1);
-        for (char& letter : reason) {
-            if (letter == '\n') letter = ' ';
-        }
-        throw InputError(file.string() + ": not a readable OBJ file" + (reason.empty() ? "" : ": " + reason));
-    }
-
+Mesh read_obj(std::string_view contents, const std::string& file) {
     Mesh mesh;
-    mesh.positions = reader.GetAttrib().vertices;
-    std::size_t face = 0;
-    for (const tinyobj::shape_t& shape : reader.GetShapes()) {
-        std::size_t first = 0;
-        for (const std::size_t count : shape.mesh.num_face_vertices) {
-            std::vector<std::int64_t> polygon;
-            for (std::size_t k = 0; k < count; ++k) polygon.push_back(shape.mesh.indices[first + k].vertex_index);
-            add_polygon(mesh, polygon, file.string(), face++);
-            first += count;
+    std::vector<std::vector<std::int64_t>> polygons;  // a face may come before its vertices
+    for (std::size_t number = 1; !contents.empty(); ++number) {
+        const std::string_view line = take_line(contents);
+        std::string_view rest = line;
+        const std::string_view key = take_word(rest);
+        if (key != "v" && key != "f") continue;
+        const std::string place = file + ":" + std::to_string(number) + ": ";
+        if (key == "v") {
+            add_vertex(mesh, rest, place, line);
+            continue;
+        }
+        std::vector<std::int64_t>& polygon = polygons.emplace_back();
+        for (std::string_view corner = take_word(rest); !corner.empty() && corner[0] != '#'; corner = take_word(rest)) {
+            polygon.push_back(vertex_index(corner, mesh, place, line));
         }
     }
+    for (std::size_t face = 0; face < polygons.size(); ++face) add_polygon(mesh, polygons[face], file, face);
     return mesh;
 }
 

@@ -3,11 +3,13 @@
 
 #include "run/mesh.hpp"
 
-#include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace apsl::scenes {
 
-/// Wavefront OBJ, through tinyobjloader. Errors as in read_mesh.
-Mesh read_obj(const std::filesystem::path& file);
+/// The v and f lines of a Wavefront OBJ file; all others are passed over, and no other file is opened.
+/// `file` is what errors name. Errors as in read_mesh.
+Mesh read_obj(std::string_view contents, const std::string& file);
 
 }  // namespace apsl::scenes

@@ -2,49 +2,132 @@
 #include "run/read_ply.hpp"
 
 #include "run/input_error.hpp"
+#include "run/ply_header.hpp"
 #include "run/polygons.hpp"
+#include "run/words.hpp"
 
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
+#include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <cstring>
+#include <limits>
 
 namespace apsl::scenes {
+namespace {
 
-Mesh read_ply(const std::filesystem::path& file) {
-    Assimp::Importer importer;
-    // No post-processing flags: vertices stay as they are in the file, none split, none joined.
-    const aiScene* scene = importer.ReadFile(file.string(), 0);
-    if (scene == nullptr || scene->mNumMeshes != 1) {
-        std::string reason = importer.GetErrorString();
-        for (char& letter : reason) {
-            if (letter == '\n' || letter == '\r') letter = ' ';
-        }
-        throw InputError(file.string() + ": not a readable PLY mesh" + (reason.empty() ? "" : ": " + reason));
+/// Numbers one after the other, as the header says they are written.
+class PlyNumbers {
+public:
+    PlyNumbers(PlyFormat format, std::string_view contents, const std::string& file)
+        : format_(format), rest_(contents), file_(file) {}
+
+    double next(const PlyType& type) { return format_ == PlyFormat::ascii ? next_word() : next_bytes(type); }
+
+    /// The least that a number takes: what bounds every count by the size of the file.
+    std::size_t least_bytes(const PlyType& type) const { return format_ == PlyFormat::ascii ? 1 : type.size; }
+    std::size_t bytes_left() const { return rest_.size(); }
+
+private:
+    double next_word() {
+        const std::string_view word = take_word(rest_, " \t\r\n");
+        double number = 0.0;
+        if (word.empty()) refuse_ply(file_, "ends before its last number");
+        if (!parse_number(word, number)) refuse_ply(file_, "expected a number, got " + quoted(word));
+        return number;
     }
 
-    const aiMesh& source = *scene->mMeshes[0];
+    double next_bytes(const PlyType& type) {
+        if (rest_.size() < type.size) refuse_ply(file_, "ends before its last number");
+        unsigned char bytes[8];
+        std::memcpy(bytes, rest_.data(), type.size);
+        rest_.remove_prefix(type.size);
+        const bool little = format_ == PlyFormat::binary_little_endian;
+        if (little != (std::endian::native == std::endian::little)) std::reverse(bytes, bytes + type.size);
+        return type.is_float    ? (type.size == 4 ? number<float>(bytes) : number<double>(bytes))
+               : type.size == 1 ? (type.is_signed ? number<std::int8_t>(bytes) : number<std::uint8_t>(bytes))
+               : type.size == 2 ? (type.is_signed ? number<std::int16_t>(bytes) : number<std::uint16_t>(bytes))
+                                : (type.is_signed ? number<std::int32_t>(bytes) : number<std::uint32_t>(bytes));
+    }
+
+    template <class Number>
+    static double number(const unsigned char* bytes) {
+        Number value;
+        std::memcpy(&value, bytes, sizeof value);
+        return static_cast<double>(value);
+    }
+
+    PlyFormat format_;
+    std::string_view rest_;
+    const std::string& file_;
+};
+
+std::size_t list_length(PlyNumbers& numbers, const PlyProperty& property, const std::string& file) {
+    const double length = numbers.next(*property.count);
+    if (!(length >= 0.0) || length != std::floor(length) ||
+        length * static_cast<double>(numbers.least_bytes(property.type)) > static_cast<double>(numbers.bytes_left()))
+        refuse_ply(file, "a list is longer than the file, or has no length");
+    return static_cast<std::size_t>(length);
+}
+
+void skip(PlyNumbers& numbers, const PlyProperty& property, const std::string& file) {
+    const std::size_t count = property.count ? list_length(numbers, property, file) : 1;
+    for (std::size_t n = 0; n < count; ++n) numbers.next(property.type);
+}
+
+void read_vertex(PlyNumbers& numbers, const PlyElement& element, const std::string& file, Mesh& mesh) {
+    double place[3];
+    std::fill(place, place + 3, std::numeric_limits<double>::quiet_NaN());
+    for (const PlyProperty& property : element.properties) {
+        const bool is_coordinate = property.name.size() == 1 && property.name >= "x" && property.name <= "z";
+        if (is_coordinate && !property.count)
+            place[property.name[0] - 'x'] = numbers.next(property.type);
+        else
+            skip(numbers, property, file);
+    }
+    for (const double coordinate : place)
+        if (!std::isfinite(coordinate))
+            throw InputError(file + ": vertex " + std::to_string(mesh.vertex_count()) +
+                             ": expected three finite coordinates");
+    mesh.positions.insert(mesh.positions.end(), place, place + 3);
+}
+
+std::vector<std::int64_t> read_face(PlyNumbers& numbers, const PlyElement& element, const std::string& file) {
+    std::vector<std::int64_t> polygon;
+    for (const PlyProperty& property : element.properties) {
+        if (!property.count || (property.name != "vertex_indices" && property.name != "vertex_index")) {
+            skip(numbers, property, file);
+            continue;
+        }
+        polygon.resize(list_length(numbers, property, file));
+        for (std::int64_t& vertex : polygon) {
+            const double index = numbers.next(property.type);
+            if (!(std::abs(index) <= 0x1p32) || index != std::floor(index))
+                refuse_ply(file, "a face's vertex is no whole number of 32 bits");
+            vertex = static_cast<std::int64_t>(index);
+        }
+    }
+    return polygon;
+}
+
+}  // namespace
+
+Mesh read_ply(std::string_view contents, const std::string& file) {
+    const PlyHeader header = take_ply_header(contents, file);
+    PlyNumbers numbers(header.format, contents, file);
     Mesh mesh;
-    mesh.positions.reserve(std::size_t{3} * source.mNumVertices);
-    for (unsigned v = 0; v < source.mNumVertices; ++v) {
-        const aiVector3D& place = source.mVertices[v];
-        if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z)) {
-            throw InputError(file.string() + ": vertex " + std::to_string(v) + ": expected three finite coordinates");
+    std::vector<std::vector<std::int64_t>> polygons;  // the faces may come before the vertices
+    for (const PlyElement& element : header.elements) {
+        // An element without properties takes no room in the file: its count bounds nothing and is not gone through.
+        for (std::uint64_t n = 0; n < element.count && !element.properties.empty(); ++n) {
+            if (element.name == "vertex")
+                read_vertex(numbers, element, file, mesh);
+            else if (element.name == "face")
+                polygons.push_back(read_face(numbers, element, file));
+            else
+                for (const PlyProperty& property : element.properties) skip(numbers, property, file);
         }
-        mesh.positions.insert(mesh.positions.end(), {place.x, place.y, place.z});
     }
-    for (unsigned face = 0; face < source.mNumFaces; ++face) {
-        const aiFace& corners = source.mFaces[face];
-        std::vector<std::int64_t> polygon;
-        // Signed again: Assimp reads an index of −1 as 2³² − 1.
-        for (unsigned k = 0; k < corners.mNumIndices; ++k) {
-            polygon.push_back(static_cast<std::int32_t>(corners.mIndices[k]));
-        }
-        add_polygon(mesh, polygon, file.string(), face);
-    }
+    for (std::size_t face = 0; face < polygons.size(); ++face) add_polygon(mesh, polygons[face], file, face);
     return mesh;
 }
 

@@ -3,12 +3,13 @@
 
 #include "run/mesh.hpp"
 
-#include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace apsl::scenes {
 
-/// Stanford PLY, text or binary, through Assimp. Coordinates are rounded to 32-bit floats, which is what Assimp holds.
-/// Errors as in read_mesh.
-Mesh read_ply(const std::filesystem::path& file);
+/// Stanford PLY 1.0, text or binary of either byte order: x, y, z of the vertices and the faces' vertex_indices (or
+/// vertex_index); other elements and properties are passed over. `file` is what errors name. Errors as in read_mesh.
+Mesh read_ply(std::string_view contents, const std::string& file);
 
 }  // namespace apsl::scenes

@@ -25,28 +25,43 @@ struct MeshFile {
 
 using MeshSource = std::variant<GridMesh, TubeMesh, MeshFile>;
 
-struct PinnedVertices {
+struct SelectedVertices {
     std::vector<std::uint32_t> vertices;
 };
 
 /// Corners of the mesh's bounding box, such as "min_x_max_y": the vertex nearest to the corner, seen along the axes
 /// that are not named.
-struct PinnedCorners {
+struct SelectedCorners {
     std::vector<std::string> corners;
 };
 
 /// Every vertex inside, faces included.
-struct PinnedBox {
+struct SelectedBox {
     std::array<double, 3> min{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
                               -std::numeric_limits<double>::infinity()};  ///< m
     std::array<double, 3> max{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
                               std::numeric_limits<double>::infinity()};  ///< m
 };
 
-/// Which vertices are pinned, before the mesh is known, and how they move.
+/// Vertices, before the mesh is known.
+using VertexSelection = std::variant<SelectedVertices, SelectedCorners, SelectedBox>;
+
+/// Which vertices are pinned and how they move.
 struct Pin {
-    std::variant<PinnedVertices, PinnedCorners, PinnedBox> selection;
+    VertexSelection selection;
     PinMotion motion;
+};
+
+/// Vertices heavier or lighter than their triangles make them.
+struct MassFactor {
+    VertexSelection selection;
+    double factor = 1.0;  ///< > 0
+};
+
+/// Where free vertices are when the first step begins; springs and areas are at rest where the mesh has them.
+struct Start {
+    std::array<double, 3> scale{1.0, 1.0, 1.0};  ///< about the mean of the mesh's vertices: 0 collapses, −1 mirrors
+    double random = 0.0;                         ///< m, ≥ 0: each is then moved by up to this along each axis
 };
 
 /// Gravity alone moves the cloth ahead of the filter.
@@ -82,6 +97,8 @@ struct Scene {
     MeshSource mesh;
     double density = 0.2;  ///< kg/m², > 0
     std::vector<Pin> pins;
+    std::vector<MassFactor> masses;  ///< a vertex that several select takes them all
+    Start start;
     std::array<double, 3> gravity{0.0, -9.81, 0.0};  ///< m/s²
     double time_step = 1.0 / 60.0;                   ///< s, > 0
     int steps_per_frame = 1;                         ///< ≥ 1

@@ -3,7 +3,8 @@
 
 #include "run/input_error.hpp"
 #include "run/read_mesh.hpp"
-#include "run/resolve_pins.hpp"
+#include "run/select_vertices.hpp"
+#include "run/start_positions.hpp"
 
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
@@ -54,6 +55,17 @@ void note_topology(const Topology& topology, const std::string& name, std::vecto
     }
 }
 
+// A pinned vertex keeps its inverse mass of 0.
+void change_masses(const Scene& scene, const Mesh& mesh, ClothState& cloth) {
+    for (std::size_t k = 0; k < scene.masses.size(); ++k) {
+        const std::string where = scene.file + ": masses[" + std::to_string(k) + "]";
+        for (const std::uint32_t vertex : select_vertices(scene.masses[k].selection, mesh, where)) {
+            cloth.masses[vertex] *= scene.masses[k].factor;
+            cloth.inverse_masses[vertex] /= scene.masses[k].factor;
+        }
+    }
+}
+
 }  // namespace
 
 SceneCloth make_scene_cloth(const Scene& scene) {
@@ -66,6 +78,8 @@ SceneCloth make_scene_cloth(const Scene& scene) {
         check_rest_areas(reference::areas<double>(*topology, mesh.positions), name, cloth.warnings);
         cloth.pins = resolve_pins(scene, mesh);
         cloth.state = make_cloth_state(topology, mesh.positions, scene.density, pinned_vertices(cloth.pins));
+        change_masses(scene, mesh, cloth.state);
+        set_start_positions(scene.start, cloth.state);
         note_topology(*topology, name, cloth.warnings);
     } catch (const Error& error) {
         throw InputError(name + ": " + error.what());

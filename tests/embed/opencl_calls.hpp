@@ -7,9 +7,21 @@
 
 namespace apsl::test {
 
+/// References to OpenCL objects that this program holds: those it created or retained less those it released.
+struct OpenClReferences {
+    int queues = 0;
+    int buffers = 0;
+    int programs = 0;
+    int kernels = 0;
+    int events = 0;  ///< those that an enqueue handed out included
+
+    friend bool operator==(const OpenClReferences&, const OpenClReferences&) = default;
+};
+
 /// The program's OpenCL calls since it began. This program defines these entry points itself and hands each call on.
 struct OpenClCalls {
     int host_waits = 0;      ///< clFinish, clWaitForEvents
+    int polls = 0;           ///< clGetEventInfo
     int blocking_calls = 0;  ///< reads, writes and maps with a blocking flag
     int reads = 0;           ///< clEnqueueReadBuffer, clEnqueueMapBuffer, blocking or not
     int allocations = 0;     ///< clCreateBuffer
@@ -18,6 +30,7 @@ struct OpenClCalls {
     int builds = 0;          ///< clBuildProgram
     int binaries = 0;        ///< clCreateProgramWithBinary
     std::size_t allocated_bytes = 0;
+    OpenClReferences held;
 };
 
 OpenClCalls opencl_calls();
@@ -31,5 +44,17 @@ struct Pretence {
 };
 
 void pretend(const Pretence& pretence);
+
+/// Called in front of the calls they are named after; null where nothing is to be done.
+struct CallHooks {
+    void (*before_wait)() = nullptr;  ///< what host_waits and blocking_calls count
+    void (*before_kernel)(cl_command_queue) = nullptr;
+};
+
+void set_call_hooks(const CallHooks& hooks);
+
+/// The `number`-th call from now, from 1, that creates an object, builds or enqueues fails with CL_OUT_OF_RESOURCES,
+/// and is not handed on; those after it do as always. 0: none fails.
+void fail_opencl_call(int number);
 
 }  // namespace apsl::test

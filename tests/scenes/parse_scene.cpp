@@ -33,6 +33,9 @@ TEST_CASE("every key but mesh has a default, and what is not named is not there"
     CHECK(grid.plane == GridPlane::horizontal);
     CHECK(scene.density == 0.2);
     CHECK(scene.pins.empty());
+    CHECK(scene.masses.empty());
+    CHECK(scene.start.scale == std::array<double, 3>{1.0, 1.0, 1.0});
+    CHECK(scene.start.random == 0.0);
     CHECK(scene.gravity == std::array<double, 3>{0.0, -9.81, 0.0});
     CHECK(scene.time_step == 1.0 / 60.0);
     CHECK(scene.steps_per_frame == 1);
@@ -75,6 +78,8 @@ TEST_CASE("every value is taken from where it stands") {
                  {"box": {"min": [0, 1, 2]}, "motion": {"rotate": {"axis": [0, 0, 2], "degrees_per_second": 90,
                   "center": [1, 1, 1]}, "start": 0.5, "stop": 2}},
                  {"vertices": [0], "motion": {"translate": {"velocity": [0, 1, 0]}}}],
+        "masses": [{"vertices": [5], "factor": 1000}, {"box": {"max": [0, 0, 0]}, "factor": 0.5}],
+        "start": {"scale": [1, 0, -1], "random": 0.25},
         "integrator": {"stand_alone": {"bend_stiffness": 50, "damping": 0}},
         "strain_limiting": {"matrix": "printed", "apply": "assembled_csr", "regularization": 2.5, "sub_steps": 3,
                             "target_area_change": 0.01, "tolerance": 0.001, "max_iterations": 9,
@@ -94,10 +99,10 @@ TEST_CASE("every value is taken from where it stands") {
     CHECK(scene.frames == 7);
 
     REQUIRE(scene.pins.size() == 4);
-    CHECK(std::get<PinnedVertices>(scene.pins[0].selection).vertices == std::vector<std::uint32_t>{3, 1});
+    CHECK(std::get<SelectedVertices>(scene.pins[0].selection).vertices == std::vector<std::uint32_t>{3, 1});
     CHECK(std::holds_alternative<PinHeld>(scene.pins[0].motion.path));
-    CHECK(std::get<PinnedCorners>(scene.pins[1].selection).corners == std::vector<std::string>{"min_x_max_y"});
-    const PinnedBox& box = std::get<PinnedBox>(scene.pins[2].selection);
+    CHECK(std::get<SelectedCorners>(scene.pins[1].selection).corners == std::vector<std::string>{"min_x_max_y"});
+    const SelectedBox& box = std::get<SelectedBox>(scene.pins[2].selection);
     CHECK(box.min == std::array<double, 3>{0, 1, 2});
     CHECK(std::isinf(box.max[0]));
     const PinRotation& rotation = std::get<PinRotation>(scene.pins[2].motion.path);
@@ -107,6 +112,14 @@ TEST_CASE("every value is taken from where it stands") {
     CHECK(scene.pins[2].motion.start == 0.5);
     CHECK(scene.pins[2].motion.stop == 2.0);
     CHECK(std::get<PinTranslation>(scene.pins[3].motion.path).velocity == std::array<double, 3>{0, 1, 0});
+
+    REQUIRE(scene.masses.size() == 2);
+    CHECK(std::get<SelectedVertices>(scene.masses[0].selection).vertices == std::vector<std::uint32_t>{5});
+    CHECK(scene.masses[0].factor == 1000.0);
+    CHECK(std::get<SelectedBox>(scene.masses[1].selection).max == std::array<double, 3>{0, 0, 0});
+    CHECK(scene.masses[1].factor == 0.5);
+    CHECK(scene.start.scale == std::array<double, 3>{1, 0, -1});
+    CHECK(scene.start.random == 0.25);
 
     const auto& stand_alone = std::get<StandAloneIntegrator>(scene.integrator);
     CHECK(stand_alone.bend_stiffness == 50);
@@ -159,8 +172,8 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("gravity": [0, 1])", "gravity: expected three numbers, got [0,1]"},
         {R"("gravity": [0, 1, "x"])", "gravity[2]: expected a number, got \"x\""},
         {R"("color": 1)",
-         "color: unknown key, expected one of mesh, density, pins, gravity, time_step, steps_per_frame, frames, "
-         "integrator, strain_limiting, colliders"},
+         "color: unknown key, expected one of mesh, density, pins, masses, start, gravity, time_step, "
+         "steps_per_frame, frames, integrator, strain_limiting, colliders"},
         {R"("strain_limiting": {"alpha": 2})",
          "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, regularization, "
          "sub_steps, target_area_change, tolerance, max_iterations, adaptive_iterations, first_regularization, "
@@ -243,4 +256,14 @@ TEST_CASE("a scene file that is missing or no JSON") {
                Catch::StartsWith(broken + ": not valid JSON: parse error at line 3, column"));
     const std::string huge = folder.write("huge.json", R"({"mesh": {"grid": {}}, "density": 1e999})");
     CHECK_THAT(input_error_of([&] { read_scene(huge); }), Catch::StartsWith(huge + ": not valid JSON: "));
+}
+
+TEST_CASE("text nested too deep is refused, however deep") {
+    const std::string deep(1000000, '[');
+    const auto error = [](const std::string& text) {
+        return input_error_of([&] { parse_scene_text(text, "scene.json"); });
+    };
+    CHECK(error(deep) == "scene.json: nested more than 64 deep, expected a scene");
+    CHECK(error(std::string(64, '[') + std::string(64, ']')).empty());
+    CHECK_THAT(error("{\"mesh\":"), Catch::StartsWith("scene.json: not valid JSON: parse error at line 1"));
 }

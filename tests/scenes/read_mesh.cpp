@@ -97,7 +97,8 @@ TEST_CASE("PLY: what is wrong is named with its vertex or face") {
         {ply_text(3, 1, corners + "3 0 1 1\n"), ": face 0: names vertex 1 twice"},
         {ply_text(3, 1, corners + "2 0 1\n"), ": face 0: 2 vertices, expected at least 3"},
         {ply_text(3, 1, "0 0 zero\n1 0 0\n1 1 0\n3 0 1 2\n"), ": not a readable PLY mesh"},
-        {ply_text(0, 0, ""), ": not a readable PLY mesh"},
+        {ply_text(0, 0, ""), ": has no vertices"},
+        {ply_text(3, 1, corners + "3 0 1 1.5\n"), ": not a readable PLY mesh: a face's vertex is no whole number"},
         {"", ": not a readable PLY mesh"},
         {"v 0 0 0\n", ": not a readable PLY mesh"},
     }));
@@ -106,6 +107,56 @@ TEST_CASE("PLY: what is wrong is named with its vertex or face") {
     const std::string error = error_of(file);
     CHECK_THAT(error, Catch::StartsWith(file + message));
     CHECK(error.find('\n') == std::string::npos);
+}
+
+TEST_CASE("OBJ: no other file is opened, and faces may come before their vertices") {
+    const TemporaryFolder folder;
+    // A reader that looks at materials would never come to the end of this one.
+    const std::string file = folder.write(
+        "materials.obj", "mtllib ../../../../../../dev/zero\nusemtl cloth\nf 1 2 3 # first\nv 0 0 0\nv 1 0 0\nv 0 1 0");
+    const Mesh mesh = read_mesh(file, {});
+    CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}});
+    const std::string bad = folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n");
+    CHECK_THAT(error_of(bad), Catch::StartsWith(bad + ":4: expected vertex numbers from 1"));
+}
+
+TEST_CASE("PLY: counts that the file cannot hold are refused before memory is asked for") {
+    const TemporaryFolder folder;
+    const std::string corners = "0 0 0\n1 0 0\n1 1 0\n";
+    const std::string text = ply_text(3, 1, corners + "4000000000 0 1 2\n");
+    CHECK_THAT(error_of(folder.write("list.ply", text)), Catch::Contains("a list is longer than the file"));
+    const std::string vertices = ply_text(2000000000, 1, corners);
+    CHECK_THAT(error_of(folder.write("vertices.ply", vertices)), Catch::Contains("ends before its last number"));
+    const std::string header =
+        "ply\nformat binary_big_endian 1.0\nelement nothing 18446744073709551615\nelement vertex 1\n"
+        "property list int char x\nend_header\n";
+    CHECK_THAT(error_of(folder.write("negative.ply", header + "\xff\xff\xff\xff")),
+               Catch::Contains("or has no length"));
+}
+
+TEST_CASE("a face with very many vertices is read in no time") {
+    const TemporaryFolder folder;
+    std::string vertices, face = "f";
+    for (int v = 1; v <= 200000; ++v) {
+        vertices.append("v ").append(std::to_string(v)).append(" 0 0\n");
+        face.append(" ").append(std::to_string(v));
+    }
+    CHECK(read_mesh(folder.write("polygon.obj", vertices + face + "\n"), {}).triangles.size() == 199998);
+    const std::string twice = folder.write("twice.obj", vertices + face + " 7\n");
+    CHECK_THAT(error_of(twice), Catch::Contains("names vertex 6 twice"));
+}
+
+TEST_CASE("PLY in binary, big end first") {
+    const TemporaryFolder folder;
+    std::string contents =
+        "ply\r\nformat binary_big_endian 1.0\r\nelement vertex 3\r\nproperty short x\r\nproperty uchar y\r\n"
+        "property float z\r\nelement face 1\r\nproperty list ushort char vertex_index\r\nend_header\r\n";
+    const std::string quarter("\x3e\x80\0\0", 4);
+    contents += std::string("\xff\xfe\0", 3) + quarter + std::string("\0\1\0", 3) + quarter;
+    contents += std::string("\0\0\xff", 3) + quarter + std::string("\0\3\0\1\2", 5);
+    const Mesh mesh = read_mesh(folder.write("big.ply", contents), {});
+    CHECK(mesh.positions == std::vector<double>{-2, 0, 0.25, 1, 0, 0.25, 0, 255, 0.25});
+    CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}});
 }
 
 TEST_CASE("height scales about the origin to the extent along y") {

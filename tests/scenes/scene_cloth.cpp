@@ -4,7 +4,9 @@
 #include "run/parse_scene.hpp"
 #include "scenes/sample_files.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
 
 using namespace apsl;
@@ -59,6 +61,50 @@ TEST_CASE("pins that select nothing are named") {
         {R"([{"box": {"min": [9, 9, 9]}}])", "scene.json: pins[0].box: no vertex of the mesh lies inside"},
     }));
     CHECK_THAT(input_error_of([given = pins] { pinned_grid(given); }), Catch::StartsWith(message));
+}
+
+TEST_CASE("masses are multiplied, pinned vertices stay pinned, the rest keeps its mass") {
+    const std::string grid = R"({"mesh": {"grid": {"vertices": [5, 3], "size": [4, 2]}}, "pins": [{"vertices": [0]}])";
+    const ClothState plain = make_scene_cloth(parse(grid + "}")).state;
+    const ClothState heavy =
+        make_scene_cloth(
+            parse(grid +
+                  R"(, "masses": [{"vertices": [0, 7], "factor": 1000}, {"box": {"max": [-1, 9, 9]}, "factor": 2}]})"))
+            .state;
+    for (std::size_t v = 0; v < 15; ++v) {
+        const double factor = (v == 0 || v == 7 ? 1000.0 : 1.0) * (v % 5 < 2 ? 2.0 : 1.0);
+        CHECK(heavy.masses[v] == Approx(factor * plain.masses[v]));
+        CHECK(heavy.inverse_masses[v] == Approx(plain.inverse_masses[v] / factor));
+    }
+    CHECK(heavy.inverse_masses[0] == 0.0);
+    CHECK(input_error_of([&] { make_scene_cloth(parse(grid + R"(, "masses": [{"vertices": [15]}]})")); }) ==
+          "scene.json: masses[0].vertices[0]: vertex 15 is out of range, expected 0 to 14");
+}
+
+TEST_CASE("a cloth starts scaled about its middle, or shaken, and its rest stays") {
+    const auto start = [](const std::string& values) {
+        return make_scene_cloth(parse(R"({"mesh": {"grid": {"vertices": [5, 3], "size": [4, 2]}},
+                                          "pins": [{"vertices": [0]}], "start": )" +
+                                      values + "}"))
+            .state;
+    };
+    const ClothState mirrored = start(R"({"scale": [-1, 1, 0]})");
+    for (std::size_t v = 1; v < 15; ++v) {
+        CHECK(mirrored.positions[3 * v] == Approx(-mirrored.rest_positions[3 * v]).margin(1e-12));
+        CHECK(mirrored.positions[3 * v + 2] == Approx(0.0).margin(1e-12));
+    }
+    CHECK(mirrored.positions[0] == mirrored.rest_positions[0]);
+    CHECK(mirrored.rest_areas[0] == Approx(0.5));
+
+    const ClothState shaken = start(R"({"random": 0.25})");
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < 45; ++i) {
+        farthest = std::max(farthest, std::abs(shaken.positions[i] - shaken.rest_positions[i]));
+    }
+    CHECK(farthest <= 0.25);
+    CHECK(farthest > 0.2);
+    CHECK(shaken.positions == start(R"({"random": 0.25})").positions);
+    CHECK(start("{}").positions == start("{}").rest_positions);
 }
 
 TEST_CASE("flaws of a mesh are warned of, with what to do") {

@@ -140,10 +140,10 @@ void GuardedMemory::read(void* contents) const {
     std::memcpy(contents, all.data() + band_, bytes_);
 }
 
+// Makes the memory anew: get() is another buffer afterwards. A blocking write would not do. It may return with the copy
+// still queued, and kernels run on other queues.
 void GuardedMemory::write(const void* contents) {
-    require_success(
-        clEnqueueWriteBuffer(transfer_queue(), whole_.get(), CL_TRUE, band_, bytes_, contents, 0, nullptr, nullptr),
-        "clEnqueueWriteBuffer");
+    *this = GuardedMemory(contents, bytes_);
 }
 
 }  // namespace apsl::test

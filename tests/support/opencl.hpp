@@ -86,7 +86,7 @@ private:
 template <class Value>
 std::vector<Value> poison(std::size_t count) {
     std::vector<Value> values(count);
-    std::memset(static_cast<void*>(values.data()), 0xFF, count * sizeof(Value));
+    if (count > 0) std::memset(static_cast<void*>(values.data()), 0xFF, count * sizeof(Value));
     return values;
 }
 

@@ -52,6 +52,10 @@ TEST_CASE("only ours keep the strain limiting, with the scene's own values where
     CHECK(prepared("apsl_printed", {}).document["strain_limiting"]["matrix"] == "printed");
 }
 
+TEST_CASE("the library's defaults stand in for whatever the scene sets") {
+    CHECK(prepared("apsl_defaults", {}).document["strain_limiting"] == nlohmann::json::object());
+}
+
 TEST_CASE("a frame keeps its length whatever its steps") {
     const PreparedScene small_steps = prepared("none", {{"steps_per_frame", 8}});
     CHECK(small_steps.document["steps_per_frame"] == 8);

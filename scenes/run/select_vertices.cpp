@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "run/resolve_pins.hpp"
+#include "run/select_vertices.hpp"
 
 #include "run/input_error.hpp"
 
@@ -58,7 +58,7 @@ std::uint32_t nearest_vertex(const Mesh& mesh, const std::array<std::optional<do
     return static_cast<std::uint32_t>(nearest);
 }
 
-std::vector<std::uint32_t> select(const PinnedVertices& selection, const Mesh& mesh, const std::string& where) {
+std::vector<std::uint32_t> select(const SelectedVertices& selection, const Mesh& mesh, const std::string& where) {
     for (std::size_t k = 0; k < selection.vertices.size(); ++k) {
         if (selection.vertices[k] >= mesh.vertex_count()) {
             throw InputError(where + ".vertices[" + std::to_string(k) + "]: vertex " +
@@ -69,7 +69,7 @@ std::vector<std::uint32_t> select(const PinnedVertices& selection, const Mesh& m
     return selection.vertices;
 }
 
-std::vector<std::uint32_t> select(const PinnedCorners& selection, const Mesh& mesh, const std::string& where) {
+std::vector<std::uint32_t> select(const SelectedCorners& selection, const Mesh& mesh, const std::string& where) {
     const BoundingBox box = bounding_box(mesh);
     std::vector<std::uint32_t> vertices;
     for (const std::string& name : selection.corners) {
@@ -83,7 +83,7 @@ std::vector<std::uint32_t> select(const PinnedCorners& selection, const Mesh& me
     return vertices;
 }
 
-std::vector<std::uint32_t> select(const PinnedBox& box, const Mesh& mesh, const std::string& where) {
+std::vector<std::uint32_t> select(const SelectedBox& box, const Mesh& mesh, const std::string& where) {
     std::vector<std::uint32_t> vertices;
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
         bool inside = true;
@@ -99,13 +99,16 @@ std::vector<std::uint32_t> select(const PinnedBox& box, const Mesh& mesh, const 
 
 }  // namespace
 
+std::vector<std::uint32_t> select_vertices(const VertexSelection& selection, const Mesh& mesh,
+                                           const std::string& where) {
+    return std::visit([&](const auto& kind) { return select(kind, mesh, where); }, selection);
+}
+
 std::vector<PinGroup> resolve_pins(const Scene& scene, const Mesh& mesh) {
     std::vector<PinGroup> groups;
     for (std::size_t k = 0; k < scene.pins.size(); ++k) {
         const std::string where = scene.file + ": pins[" + std::to_string(k) + "]";
-        groups.push_back(
-            {std::visit([&](const auto& selection) { return select(selection, mesh, where); }, scene.pins[k].selection),
-             scene.pins[k].motion});
+        groups.push_back({select_vertices(scene.pins[k].selection, mesh, where), scene.pins[k].motion});
     }
     return groups;
 }

@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The atlas in numbers, as it stands in docs/stability.md: how many points each method holds on each map, where a rival
+holds and ours does not, and where ours is worse than no limiter. Markdown."""
+
+import argparse
+import json
+from pathlib import Path
+
+import maps
+import outcome
+
+CASES = "cases"
+
+
+def is_ours(method):
+    return method["name"].startswith("apsl")
+
+
+def named(label, value):
+    """mass ratio 100 000; time step 1/60 s; speed 3 m/s."""
+    name, _, unit = label.removesuffix(")").partition(" (")
+    number = f"1/{round(1.0 / value)}" if name == "time step" else (
+        f"{value:,.0f}".replace(",", " ") if value >= 1000 else f"{value:g}")
+    return f"{name} {number}" + (f" {unit}" if unit else "")
+
+
+def points_of(document):
+    """(name of the point, row, column)."""
+    if "cases" in document:
+        return [(name, row, 0) for row, name in enumerate(document["cases"])]
+    x, y = document["x"], document["y"]
+    return [(f"{named(y['label'], b)}, {named(x['label'], a)}", row, column)
+            for row, b in enumerate(y["values"]) for column, a in enumerate(x["values"])]
+
+
+def count(method, letter):
+    return "".join(method["outcome"]).count(letter)
+
+
+def percent(change):
+    if change is None:
+        return "not finite"
+    return f"{float(f'{100.0 * change:.2g}'):g} %" if change < 10.0 else "> 1000 %"
+
+
+def judged(document):
+    """The method that stands for ours: the defaults, on the map of α the paper's."""
+    methods = {method["name"]: method for method in document["methods"]}
+    return methods.get("apsl_defaults") or methods["apsl"]
+
+
+def held_by_rivals_alone(document):
+    ours = judged(document)
+    for name, row, column in points_of(document):
+        if ours["outcome"][row][column] == outcome.HELD:
+            continue
+        holding = [method for method in document["methods"]
+                   if not is_ours(method) and method["outcome"][row][column] == outcome.HELD]
+        if holding:
+            best = min(holding, key=lambda method: method["greatest"][row][column])
+            title = "no limiter" if best["name"] == "none" else best["title"]
+            yield (f"{name}: ours {percent(ours['greatest'][row][column])}, "
+                   f"{title} {percent(best['greatest'][row][column])}"
+                   + (f", held by {len(holding)}" if len(holding) > 1 else ""))
+
+
+def worse_than_none(document):
+    ours = judged(document)
+    without = next(method for method in document["methods"] if method["name"] == "none")
+    for name, row, column in points_of(document):
+        if ours["outcome"][row][column] == outcome.WORSE or (
+                ours["outcome"][row][column] == outcome.DIVERGED_RUN
+                and without["outcome"][row][column] != outcome.DIVERGED_RUN):
+            yield (f"{name}: ours {percent(ours['greatest'][row][column])}, "
+                   f"no limiter {percent(without['greatest'][row][column])}")
+
+
+def table(documents):
+    lines = ["| map | points | no limiter holds | ours, the defaults | ours, the paper's | ours, printed | best rival "
+             "| a rival holds, ours does not | ours worse than no limiter |", "|---|---|---|---|---|---|---|---|---|"]
+    for document in documents:
+        methods = {method["name"]: method for method in document["methods"]}
+        held = {name: str(count(method, outcome.HELD)) for name, method in methods.items()}
+        rivals = [method for method in document["methods"] if not is_ours(method) and method["name"] != "none"]
+        best = max(rivals, key=lambda method: count(method, outcome.HELD), default=None)
+        lines.append("| " + " | ".join([
+            f"[{document.get('title', 'Single cases')}](stability/{document['map']}.png)",
+            str(len(points_of(document))),
+            held["none"], held.get("apsl_defaults", "–"), held["apsl"], held["apsl_printed"],
+            "–" if best is None else f"{held[best['name']]} ({best['title']})",
+            str(len(list(held_by_rivals_alone(document)))), str(len(list(worse_than_none(document))))]) + " |")
+    return lines
+
+
+def listed(documents, find):
+    lines = []
+    for document in documents:
+        found = list(find(document))
+        if found:
+            lines.append(f"- {document.get('title', 'Single cases')}: " + "; ".join(found) + ".")
+    return lines or ["None."]
+
+
+def summary(folder):
+    names = [entry.name for entry in maps.MAPS] + [CASES]
+    documents = [json.loads((folder / f"{name}.json").read_text()) for name in names]
+    return "\n".join([*table(documents), "", "**A rival holds and ours does not:**", "",
+                      *listed(documents, held_by_rivals_alone), "", "**Ours is worse than no limiter:**", "",
+                      *listed(documents, worse_than_none)]) + "\n"
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, help="docs/stability")
+    print(summary(parser.parse_args().folder), end="")

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._records import Device
+
+
+def devices() -> list[Device]:
+    """The OpenCL devices of all platforms; empty where there is none."""
+    return [Device(**fields) for fields in _core.devices()]
+
+
+def rest_areas(positions: npt.ArrayLike, triangles: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """m², [T]: the triangles' areas where the cloth is at rest. positions: m, [V, 3]. triangles: [T, 3]."""
+    return _core.rest_areas(positions, triangles)
+
+
+def area_change(positions: npt.ArrayLike, triangles: npt.ArrayLike,
+                rest_areas: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """|A − A⁰| / A⁰ of each triangle, [T], 0 where A⁰ ≤ 0.
+
+    positions: m, [V, 3]. triangles: [T, 3]. rest_areas: m², [T].
+    """
+    return _core.area_change(positions, triangles, rest_areas)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""What goes in and comes out besides arrays. The C++ structs of the same names say more (include/apsl)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypedDict, Union
+
+import numpy.typing as npt
+
+
+class Options(TypedDict, total=False):
+    """What is compiled in, once for a limiter. Defaults: StrainLimiter.options."""
+
+    matrix: Literal["consistent", "printed"]
+    apply: Literal["assembled_csr", "matrix_free"]
+    execution: Literal["automatic", "many_groups", "one_group"]
+    work_group_size: int  # a power of two; 0 takes what suits the device
+    regularization_per_triangle: bool  # `regularization` is then an array [T] in every call
+    kept_pressures: int  # sub-steps whose pressures the next call's solves start from
+
+
+class Parameters(TypedDict, total=False):
+    """What may change from call to call. Defaults: StrainLimiter.default_parameters()."""
+
+    time_step: float  # s, > 0
+    regularization: Union[float, npt.ArrayLike]  # α ≥ 1; an array [T] with regularization_per_triangle
+    sub_steps: int  # ≥ 0
+    target_area_change: float  # ≥ 0, no further sub-step once every triangle is at or below it
+    tolerance: float  # in [0, 1), of a solve's residual
+    max_iterations: int  # ≥ 1, CG iterations of a solve
+    adaptive_iterations: int  # 0: α stays as given; else more iterations than this raise it
+    first_regularization: float  # 0: one α for all sub-steps; else > 1, that of the first
+    stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small steps from 20 sub-steps up
+
+
+@dataclass(frozen=True)
+class Stats:
+    """What one call did."""
+
+    sub_steps: int  # solves done
+    cg_iterations: int  # over all of them
+    residual: float  # greatest relative residual at the end of a solve
+    max_area_change: float  # max |A − A⁰| / A⁰ of what is left behind
+    rms_area_change: float  # weighted with A⁰
+    initial_max_area_change: float  # both at x + Δt v
+    initial_rms_area_change: float
+    status: Literal["ok", "not_converged", "worsened", "diverged"]
+    offender: Literal["none", "vertex", "triangle"]  # other than none only where status is diverged
+    offender_index: int  # the first one
+
+
+@dataclass(frozen=True)
+class Device:
+    """An OpenCL device."""
+
+    number: int  # its place in devices(), as in the program's `apsl devices`
+    name: str
+    platform: str
+    driver: str
+    is_gpu: bool
+    compute_units: int
+    memory: int  # bytes
+
+
+class Error(RuntimeError):
+    """Everything that goes wrong: one line that names what, where, and what was expected.
+
+    code: "invalid_argument", "invalid_mesh", "opencl", "kernel_build" or "unsupported".
+    opencl_code: the failed call's status, 0 where none was involved.
+    build_log: the compiler's output, empty unless code is "kernel_build".
+    """
+
+    def __init__(self, message: str, code: str = "invalid_argument", opencl_code: int = 0, build_log: str = "") -> None:
+        super().__init__(message)
+        self.code = code
+        self.opencl_code = opencl_code
+        self.build_log = build_log

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "arrays.hpp"
+
+namespace apsl::python {
+
+/// m², [T]: the triangles' areas at `positions` (m, [V, 3]), in 64 bits.
+Array<double> areas(pybind11::handle positions, pybind11::handle triangles);
+
+/// |A − A⁰| / A⁰, [T]; 0 where A⁰ ≤ 0, which the filter leaves alone.
+Array<double> area_change(pybind11::handle positions, pybind11::handle triangles, pybind11::handle rest_areas);
+
+}  // namespace apsl::python

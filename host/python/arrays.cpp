@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "arrays.hpp"
+
+#include "values.hpp"
+
+#include <limits>
+#include <string>
+
+namespace apsl::python {
+namespace {
+
+constexpr const char* real_kinds = "fiu";
+constexpr const char* integer_kinds = "iu";
+
+std::string shape_text(const py::array& array) {
+    return py::repr(array.attr("shape"));
+}
+
+// The argument as it is, once its kind and shape are as they must be.
+py::array checked(py::handle argument, const char* name, const std::string& kinds, std::optional<std::size_t> rows,
+                  const char* row_name, bool three_columns) {
+    const auto array = py::array::ensure(argument);
+    const std::string what = kinds == integer_kinds ? "an array of integers" : "an array of real numbers";
+    if (!array) {
+        PyErr_Clear();
+        refuse(name, py::str(py::type::handle_of(argument).attr("__name__")), what);
+    }
+    if (kinds.find(array.dtype().kind()) == std::string::npos)
+        refuse(name, "dtype " + std::string(py::str(array.dtype())), what);
+    const bool right_columns = three_columns ? array.ndim() == 2 && array.shape(1) == 3 : array.ndim() == 1;
+    if (!right_columns || (rows && static_cast<std::size_t>(array.shape(0)) != *rows)) {
+        refuse(name, "shape " + shape_text(array),
+               "(" + (rows ? std::to_string(*rows) : std::string(row_name)) + (three_columns ? ", 3)" : ",)"));
+    }
+    return array;
+}
+
+}  // namespace
+
+template <class Value>
+Array<Value> numbers(py::handle argument, const char* name, std::optional<std::size_t> rows) {
+    return py::array_t < Value,
+           py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows, "triangles", false));
+}
+
+template <class Value>
+Array<Value> vectors(py::handle argument, const char* name, std::optional<std::size_t> rows) {
+    return py::array_t < Value,
+           py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows, "vertices", true));
+}
+
+template Array<float> numbers<float>(py::handle, const char*, std::optional<std::size_t>);
+template Array<double> numbers<double>(py::handle, const char*, std::optional<std::size_t>);
+template Array<float> vectors<float>(py::handle, const char*, std::optional<std::size_t>);
+template Array<double> vectors<double>(py::handle, const char*, std::optional<std::size_t>);
+
+std::vector<Triangle> triangle_list(py::handle argument) {
+    const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> indices(
+        checked(argument, "triangles", integer_kinds, std::nullopt, "triangles", true));
+    const auto index = indices.unchecked<2>();
+    std::vector<Triangle> triangles(static_cast<std::size_t>(indices.shape(0)));
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::int64_t vertex = index(static_cast<py::ssize_t>(t), static_cast<py::ssize_t>(corner));
+            if (vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max())
+                refuse("triangles", "vertex " + std::to_string(vertex) + " in triangle " + std::to_string(t),
+                       "0 to 4294967295");
+            triangles[t][corner] = static_cast<std::uint32_t>(vertex);
+        }
+    }
+    return triangles;
+}
+
+}  // namespace apsl::python

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "limiter.hpp"
+
+#include "arrays.hpp"
+#include "devices.hpp"
+#include "opencl_error.hpp"
+
+namespace apsl::python {
+namespace {
+
+std::optional<std::size_t> device_number(py::handle device) {
+    if (device.is_none()) return std::nullopt;
+    const py::object number =
+        py::hasattr(device, "number") ? py::object(device.attr("number")) : py::reinterpret_borrow<py::object>(device);
+    return from_python<std::uint32_t>(number, "device");
+}
+
+}  // namespace
+
+Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle device, const py::kwargs& arguments)
+    : vertex_count_(from_python<std::uint32_t>(vertex_count, "vertex_count")) {
+    const std::vector<Triangle> corners = triangle_list(triangles);
+    const Options options = with_arguments(Options{}, arguments, "StrainLimiter", option_fields);
+    const std::optional<std::size_t> number = device_number(device);
+
+    const py::gil_scoped_release others_may_run;
+    triangle_count_ = corners.size();
+    const auto topology = Topology::build(corners, vertex_count_);
+    cl_device_id id = choose_device(number);
+    cl_int code = CL_SUCCESS;
+    context_ = host::ContextHandle(clCreateContext(nullptr, 1, &id, nullptr, nullptr, &code));
+    host::check(code, "apsl: creating an OpenCL context");
+    queue_ = QueueHandle(clCreateCommandQueue(context_.get(), id, 0, &code));
+    host::check(code, "apsl: creating a command queue");
+    limiter_.emplace(context_.get(), id, topology, options);
+    positions_ = make_buffer(3 * vertex_count_);
+    velocities_ = make_buffer(3 * vertex_count_);
+    inverse_masses_ = make_buffer(vertex_count_);
+    rest_areas_ = make_buffer(triangle_count_);
+    if (options.regularization_per_triangle) regularization_ = make_buffer(triangle_count_);
+}
+
+host::BufferHandle Limiter::make_buffer(std::size_t floats) {
+    cl_int code = CL_SUCCESS;
+    host::BufferHandle buffer(
+        clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, floats * sizeof(float), nullptr, &code));
+    host::check(code, "apsl: allocating an array on the device");
+    return buffer;
+}
+
+void Limiter::upload(const host::BufferHandle& buffer, const float* values, std::size_t floats) {
+    // Blocking: where a later step throws, nothing may still be reading the caller's array.
+    host::check(clEnqueueWriteBuffer(queue_.get(), buffer.get(), CL_TRUE, 0, floats * sizeof(float), values, 0, nullptr,
+                                     nullptr),
+                "apsl: copying an array to the device");
+}
+
+py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle inverse_masses, py::handle rest_areas,
+                         const py::kwargs& arguments) {
+    const Array<float> given_positions = vectors<float>(positions, "positions", vertex_count_);
+    const Array<float> given_velocities = vectors<float>(velocities, "velocities", vertex_count_);
+    const Array<float> given_masses = numbers<float>(inverse_masses, "inverse_masses", vertex_count_);
+    const Array<float> given_areas = numbers<float>(rest_areas, "rest_areas", triangle_count_);
+    py::dict settings(arguments);
+    std::optional<Array<float>> given_regularization;
+    if (regularization_) {
+        if (!settings.contains("regularization"))
+            refuse("regularization", "nothing",
+                   "an array of real numbers (limiter made with regularization_per_triangle)");
+        given_regularization = numbers<float>(settings["regularization"], "regularization", triangle_count_);
+        settings = settings.attr("copy")();
+        settings.attr("pop")("regularization");
+    }
+    const Parameters parameters = with_arguments(Parameters{}, settings, "limit", parameter_fields);
+    Array<float> limited({static_cast<py::ssize_t>(vertex_count_), py::ssize_t{3}});
+    float* const result = limited.mutable_data();
+    Stats stats{};
+    {
+        const py::gil_scoped_release others_may_run;
+        const std::lock_guard one_call_at_a_time(mutex_);
+        upload(positions_, given_positions.data(), 3 * vertex_count_);
+        upload(velocities_, given_velocities.data(), 3 * vertex_count_);
+        upload(inverse_masses_, given_masses.data(), vertex_count_);
+        upload(rest_areas_, given_areas.data(), triangle_count_);
+        if (given_regularization) upload(regularization_, given_regularization->data(), triangle_count_);
+        const Buffers buffers{.positions = {positions_.get()},
+                              .velocities = {velocities_.get()},
+                              .inverse_masses = {inverse_masses_.get()},
+                              .rest_areas = {rest_areas_.get()},
+                              .regularization = {regularization_.get()}};
+        const host::EventHandle filtered(limiter_->enqueue(queue_.get(), buffers, parameters));
+        const host::EventHandle read(limiter_->read_stats(queue_.get(), {&stats, 1}));
+        const cl_event read_event = read.get();
+        host::check(clWaitForEvents(1, &read_event), "apsl: limiting");
+        host::check(clEnqueueReadBuffer(queue_.get(), velocities_.get(), CL_TRUE, 0, 3 * vertex_count_ * sizeof(float),
+                                        result, 0, nullptr, nullptr),
+                    "apsl: copying velocities from the device");
+    }
+    return py::make_tuple(limited, to_dict(stats, stats_fields));
+}
+
+}  // namespace apsl::python

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fields.hpp"
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <type_traits>
+
+// Structs to and from Python by their tables of fields.
+namespace apsl::python {
+
+namespace py = pybind11;
+
+[[noreturn]] inline void refuse(const std::string& argument, const std::string& got, const std::string& expected) {
+    throw Error(ErrorCode::invalid_argument, argument + ": got " + got + ", expected " + expected);
+}
+
+/// A string for an enumeration, a number or a bool for the rest.
+template <class Value>
+py::object to_python(const Value& value) {
+    if constexpr (std::is_enum_v<Value>) {
+        for (const auto& [entry, name] : names_of<Value>)
+            if (entry == value) return py::str(name);
+        throw Error(ErrorCode::unsupported, "apsl: the Python module has no name for value " +
+                                                std::to_string(static_cast<int>(value)) + " of an enumeration");
+    } else {
+        return py::cast(value);
+    }
+}
+
+/// Throws Error(invalid_argument) that names the argument for a value of another type or out of the type's range.
+template <class Value>
+Value from_python(py::handle object, const std::string& argument) {
+    const std::string got = py::repr(object);
+    if constexpr (std::is_enum_v<Value>) {
+        std::string expected;
+        for (const auto& [value, name] : names_of<Value>) {
+            if (py::isinstance<py::str>(object) && object.cast<std::string>() == name) return value;
+            expected += (expected.empty() ? "'" : ", '") + std::string(name) + "'";
+        }
+        refuse(argument, got, "one of " + expected);
+    } else {
+        constexpr bool is_bool = std::is_same_v<Value, bool>;
+        constexpr const char* expected = is_bool                           ? "True or False"
+                                         : std::is_floating_point_v<Value> ? "a number"
+                                         : std::is_unsigned_v<Value>       ? "an integer from 0 to 4294967295"
+                                                                           : "an integer of 32 bits";
+        // pybind11 takes a float where an int stands to be a mistake, and a bool to be a number.
+        if (py::isinstance<py::bool_>(object) != is_bool) refuse(argument, got, expected);
+        try {
+            return object.cast<Value>();
+        } catch (const py::cast_error&) {
+            refuse(argument, got, expected);
+        }
+    }
+}
+
+template <class Struct, class... Fields>
+py::dict to_dict(const Struct& values, const std::tuple<Fields...>& fields) {
+    py::dict dict;
+    std::apply([&](const auto&... field) { ((dict[field.name] = to_python(values.*field.member)), ...); }, fields);
+    return dict;
+}
+
+/// `values` with what `arguments` names replaced. Throws TypeError for a name that no field has, as Python does.
+template <class Struct, class... Fields>
+Struct with_arguments(Struct values, const py::dict& arguments, const char* function,
+                      const std::tuple<Fields...>& fields) {
+    for (const auto& [key, object] : arguments) {
+        const auto name = key.template cast<std::string>();
+        bool known = false;
+        std::string names;
+        const auto take = [&, value = object](const auto& field) {
+            names += (names.empty() ? "" : ", ") + std::string(field.name);
+            if (name != field.name) return;
+            known = true;
+            using Value = std::remove_reference_t<decltype(values.*field.member)>;
+            values.*field.member = from_python<Value>(value, name);
+        };
+        std::apply([&](const auto&... field) { (take(field), ...); }, fields);
+        if (!known) {
+            throw py::type_error(std::string(function) + "() got an unexpected keyword argument '" + name +
+                                 "', expected " + names);
+        }
+    }
+    return values;
+}
+
+}  // namespace apsl::python

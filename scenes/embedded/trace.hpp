@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CL/opencl.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iomanip>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// What host and device did when, in Chrome's trace format (chrome://tracing, ui.perfetto.dev): one row for the host's
+/// calls, one for the device's queue, µs since the first call. The queue must have CL_QUEUE_PROFILING_ENABLE.
+class Trace {
+public:
+    /// µs
+    static double now() {
+        return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+
+    /// A stage that the host began to queue at `begin` and has just queued. `event`: of its last command. `many`: it is
+    /// more than that one command.
+    void add(const char* stage, int frame, double begin, const cl::Event& event, bool many) {
+        stages_.push_back({stage, frame, begin, now(), event, many});
+    }
+
+    /// Only once all commands have ended. The slice of a stage of many commands begins where the stage before ended: an
+    /// event tells of its own command alone.
+    void write(const std::string& path) const {
+        std::ofstream file(path);
+        file << std::fixed << std::setprecision(3) << R"({"displayTimeUnit": "ms", "traceEvents": [)" << '\n'
+             << R"({"ph": "M", "pid": 1, "tid": 1, "name": "thread_name", "args": {"name": "host: enqueue"}},)" << '\n'
+             << R"({"ph": "M", "pid": 1, "tid": 2, "name": "thread_name", "args": {"name": "device: queue"}})";
+        const double first = stages_.empty() ? 0.0 : stages_.front().begin;
+        const double shift = host_minus_device() - first;
+        double before = 0.0;
+        for (const Stage& stage : stages_) {
+            const auto slice = [&](int row, double begin, double end) {
+                file << ",\n{\"ph\": \"X\", \"pid\": 1, \"tid\": " << row << ", \"name\": \"" << stage.name
+                     << "\", \"ts\": " << begin << ", \"dur\": " << end - begin
+                     << ", \"args\": {\"frame\": " << stage.frame << "}}";
+            };
+            slice(1, stage.begin - first, stage.end - first);
+            const double start = device_time<CL_PROFILING_COMMAND_START>(stage) + shift;
+            const double end = device_time<CL_PROFILING_COMMAND_END>(stage) + shift;
+            slice(2, stage.many ? before : start, end);
+            before = end;
+        }
+        file << "\n]}\n";
+        if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
+    }
+
+private:
+    struct Stage {
+        const char* name;
+        int frame;
+        double begin, end;  // of the host's calls, µs
+        cl::Event event;
+        bool many;
+    };
+
+    template <cl_profiling_info what>
+    static double device_time(const Stage& stage) {
+        return 1e-3 * static_cast<double>(stage.event.getProfilingInfo<what>());
+    }
+
+    /// OpenCL 1.2 does not relate the two clocks, but a command is queued by the device's clock within the call that
+    /// queues it by the host's. The shortest call tells the difference best, to half its length.
+    double host_minus_device() const {
+        const auto shorter = [](const Stage& a, const Stage& b) { return a.end - a.begin < b.end - b.begin; };
+        const auto shortest = std::min_element(stages_.begin(), stages_.end(), shorter);
+        if (shortest == stages_.end()) return 0.0;
+        return 0.5 * (shortest->begin + shortest->end) - device_time<CL_PROFILING_COMMAND_QUEUED>(*shortest);
+    }
+
+    std::vector<Stage> stages_;
+};

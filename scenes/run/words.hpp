@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace apsl::scenes {
+
+/// Takes the next line off `rest`, without its end: \n, \r\n or \r.
+inline std::string_view take_line(std::string_view& rest) {
+    const std::size_t end = rest.find_first_of("\r\n");
+    const std::string_view line = rest.substr(0, end);
+    if (end == std::string_view::npos) {
+        rest = {};
+    } else {
+        rest.remove_prefix(end + (rest.substr(end).starts_with("\r\n") ? 2 : 1));
+    }
+    return line;
+}
+
+/// Takes the next word off `rest`; empty where there is none. Words lie between the characters of `blanks`.
+inline std::string_view take_word(std::string_view& rest, std::string_view blanks = " \t") {
+    const std::size_t begin = rest.find_first_not_of(blanks);
+    if (begin == std::string_view::npos) return rest = {};
+    rest.remove_prefix(begin);
+    const std::string_view word = rest.substr(0, rest.find_first_of(blanks));
+    rest.remove_prefix(word.size());
+    return word;
+}
+
+/// For messages: in quotation marks, and not all of a megabyte.
+inline std::string quoted(std::string_view text) {
+    std::string shown = "\"";
+    shown.append(text.substr(0, 60));
+    return shown.append(text.size() > 60 ? "...\"" : "\"");
+}
+
+/// The number that all of the word is; false where it is none, or out of Number's range.
+template <class Number>
+bool parse_number(std::string_view word, Number& number) {
+    if (word.starts_with('+')) word.remove_prefix(1);
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    return error == std::errc{} && end == word.data() + word.size();
+}
+
+}  // namespace apsl::scenes

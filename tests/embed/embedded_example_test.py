@@ -1,0 +1,211 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The example of scenes/embedded as its reader runs it: on both kinds of queue, its trace, its host's waits.
+
+Usage: embedded_example_test.py EMBEDDED_CLOTH GATED_EMBEDDED_CLOTH SCENES_EMBEDDED
+The gated one is the same program, its calls counted and its first kernel held back (gated_calls.cpp).
+"""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+program, gated, source = (Path(argument) for argument in sys.argv[1:4])
+GRID, FRAMES, STEPS_PER_FRAME = 33, 40, 4
+STAGES = STEPS_PER_FRAME * ["predict", "relax_springs", "relax_springs", "limit_strain", "advance"]
+SPHERE_CENTER, SPHERE_RADIUS = np.array([0.0, -0.35, 0.0]), 0.3
+HOST, DEVICE = 1, 2  # rows of the trace
+
+
+def run(executable, folder, *options, frames=FRAMES, **environment):
+    """What the program printed; it leaves frame_N.vtp in `folder`."""
+    command = [executable, "--grid", str(GRID), "--frames", str(frames), "--out", folder, *options]
+    done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **environment}, timeout=60)
+    if done.returncode != 0:
+        raise AssertionError(f"{command} ended with {done.returncode}: {done.stderr}")
+    return done.stdout
+
+
+def read_points_and_changes(folder, frames=FRAMES):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(str(folder / f"frame_{frames - 1}.vtp"))
+    reader.Update()
+    surface = reader.GetOutput()
+    return (vtk_to_numpy(surface.GetPoints().GetData()).astype(float),
+            vtk_to_numpy(surface.GetCellData().GetArray("area_change")).astype(float))
+
+
+def stated(printed):
+    """Greatest and RMS area change and status of the last step, as the program printed them."""
+    found = re.search(r"greatest area change (\S+), RMS (\S+), .* status (\d+)", printed)
+    return float(found[1]), float(found[2]), int(found[3])
+
+
+class Example(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.printed = run(program, cls.folder / "in_order")
+        cls.points, cls.changes = read_points_and_changes(cls.folder / "in_order")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def test_both_kinds_of_queue_give_the_same_bytes(self):
+        out_of_order = run(program, self.folder / "out_of_order", "--out-of-order")
+        self.assertIn("out of order", out_of_order)
+        name = f"frame_{FRAMES - 1}.vtp"
+        self.assertEqual((self.folder / "out_of_order" / name).read_bytes(),
+                         (self.folder / "in_order" / name).read_bytes())
+        self.assertEqual(stated(out_of_order), stated(self.printed))
+
+    def test_cloth_lies_on_the_sphere_and_not_in_it(self):
+        depth = SPHERE_RADIUS - np.linalg.norm(self.points - SPHERE_CENTER, axis=1)
+        self.assertLess(depth.max(), 1e-6)
+        self.assertGreater(np.count_nonzero(depth > -1e-5), 20)
+
+    def test_pins_stay_where_they_were_and_the_rest_falls(self):
+        along = np.linspace(-0.75, 0.75, GRID)
+        pins = np.stack([along, np.zeros(GRID), np.full(GRID, -0.75)], axis=1)
+        np.testing.assert_allclose(self.points[:GRID], pins, rtol=0, atol=1e-6)
+        run(program, self.folder / "one", frames=1)
+        first, _ = read_points_and_changes(self.folder / "one", frames=1)
+        np.testing.assert_array_equal(self.points[:GRID], first[:GRID])
+        self.assertLess(self.points[GRID:, 1].max(), 0.0)
+
+    def test_area_change_is_what_the_limiter_states(self):
+        # In the air: on the sphere the collision comes after the limiter's measure.
+        printed = run(program, self.folder / "air", frames=5)
+        points, changes = read_points_and_changes(self.folder / "air", frames=5)
+        self.assertGreater(np.linalg.norm(points - SPHERE_CENTER, axis=1).min(), SPHERE_RADIUS + 1e-3)
+        greatest, rms, status = stated(printed)
+        self.assertEqual(status, 0)
+        self.assertGreater(greatest, 1e-4)
+        self.assertAlmostEqual(changes.max(), greatest, delta=2e-5)
+        self.assertAlmostEqual(np.sqrt((changes ** 2).mean()), rms, delta=2e-5)
+
+    def test_limited_on_the_sphere_too(self):
+        greatest, _, status = stated(self.printed)
+        self.assertEqual(status, 0)
+        self.assertLess(greatest, 0.1)
+
+    def test_host_waits_for_nothing_before_the_end(self):
+        for options in ([], ["--out-of-order"]):
+            commands = []
+            for frames in (2, 4):
+                calls = self.folder / "calls.json"
+                run(gated, self.folder / "gated", *options, frames=frames, APSL_TEST_CALLS=str(calls))
+                counted = json.loads(calls.read_text())
+                for what in ("host_waits", "polls", "blocking_calls", "reads", "allocations", "releases", "builds"):
+                    self.assertEqual(counted["frames"][what], 0, what)
+                # All of it was queued before the first wait; then come the statistics and the picture.
+                self.assertEqual(counted["rest"]["commands"], 0)
+                self.assertGreater(counted["rest"]["host_waits"], 0)
+                self.assertGreater(counted["rest"]["reads"], 1)
+                commands.append(counted["frames"]["commands"])
+            self.assertGreaterEqual(commands[0], 2 * len(STAGES))
+            self.assertEqual(commands[1] - commands[0], commands[0])
+
+    def test_held_back_cloth_moves_alike(self):
+        run(gated, self.folder / "held", APSL_TEST_CALLS=str(self.folder / "calls.json"))
+        points, _ = read_points_and_changes(self.folder / "held")
+        np.testing.assert_array_equal(points, self.points)
+
+
+class TraceFile(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        folder = Path(cls.temporary.name)
+        cls.traces = {}
+        for options in ((), ("--out-of-order",)):
+            for executable in (program, gated):
+                path = folder / "trace.json"
+                run(executable, folder, "--trace", path, *options, frames=3, APSL_TEST_CALLS=str(folder / "calls"))
+                cls.traces[executable, options] = json.loads(path.read_text())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def rows(self, trace):
+        slices = [event for event in trace["traceEvents"] if event["ph"] == "X"]
+        return [[event for event in slices if event["tid"] == row] for row in (HOST, DEVICE)]
+
+    def test_is_chrome_s_format(self):
+        for trace in self.traces.values():
+            self.assertEqual(trace["displayTimeUnit"], "ms")
+            names = {event["tid"]: event["args"]["name"] for event in trace["traceEvents"] if event["ph"] == "M"}
+            self.assertEqual(names, {HOST: "host: enqueue", DEVICE: "device: queue"})
+            for event in trace["traceEvents"]:
+                self.assertIn(event["ph"], "MX")
+                self.assertEqual(event["pid"], 1)
+                if event["ph"] == "M":
+                    self.assertEqual(set(event), {"ph", "pid", "tid", "name", "args"})
+                    self.assertEqual(event["name"], "thread_name")
+                else:
+                    self.assertEqual(set(event), {"ph", "pid", "tid", "name", "ts", "dur", "args"})
+                    self.assertIsInstance(event["ts"], float)
+                    self.assertGreaterEqual(event["dur"], 0.0)
+                    self.assertEqual(set(event["args"]), {"frame"})
+
+    def test_rows_hold_every_stage_of_every_frame_in_order(self):
+        for trace in self.traces.values():
+            for row in self.rows(trace):
+                self.assertEqual([(event["args"]["frame"], event["name"]) for event in row],
+                                 [(frame, stage) for frame in range(3) for stage in STAGES])
+                for event, following in zip(row, row[1:]):
+                    self.assertGreaterEqual(following["ts"], event["ts"] + event["dur"] - 0.002)  # ns, rounded
+
+    def test_no_stage_begins_before_the_host_began_to_queue_it(self):
+        for trace in self.traces.values():
+            host, device = self.rows(trace)
+            shortest = min(event["dur"] for event in host)  # the clocks are known to half of this
+            for queued, done in zip(host, device):
+                self.assertGreaterEqual(done["ts"] + done["dur"], queued["ts"] - shortest)
+
+    def test_device_never_waits_for_the_host_where_the_host_needs_nothing_of_it(self):
+        # Held back, every command was queued before the device began: what gaps are left are the device's own.
+        for options in ((), ("--out-of-order",)):
+            host, device = self.rows(self.traces[gated, options])
+            shortest = min(event["dur"] for event in host)
+            self.assertLess(host[-1]["ts"] + host[-1]["dur"], device[0]["ts"] + shortest)
+
+    def test_is_drawn(self):
+        script = source.parent / "pictures/draw_trace.py"
+        folder = Path(self.temporary.name)
+        (folder / "drawn.json").write_text(json.dumps(self.traces[program, ()]))
+        for trace, frame, code, message in (("drawn.json", "1", 0, ""), ("drawn.json", "3", 2, "holds frames 0 to 2"),
+                                            ("none.json", "1", 2, "cannot be read")):
+            done = subprocess.run([script, folder / trace, "--frame", frame, "--out", folder / "trace.png"],
+                                  capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(message, done.stderr)
+        self.assertTrue((folder / "trace.png").read_bytes().startswith(b"\x89PNG"))
+
+
+class Source(unittest.TestCase):
+    def test_pipeline_is_short_enough_to_read(self):
+        lines = sum(len((source / name).read_text().splitlines()) for name in ("embedded_cloth.cpp", "cloth_step.cl"))
+        self.assertLess(lines, 300)
+
+    def test_includes_nothing_of_ours_but_public_headers(self):
+        own = {path.name for path in source.glob("*.hpp")}
+        for path in (*source.glob("*.cpp"), *source.glob("*.hpp")):
+            for name in re.findall(r'#include [<"]([^>"]+)[>"]', path.read_text()):
+                ours = name.startswith("apsl/") or name in own
+                self.assertTrue(ours or "/" not in name or name.split("/")[0] in ("CL", "CLI"), f"{path}: {name}")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,12 @@
+# Runs the TESTS (a Catch2 selection) of PROGRAM on Intel's OpenCL for CPUs, LIBRARY, which cmake/intel_opencl.sh installs.
+if(NOT EXISTS "${LIBRARY}")
+  message("SKIPPED: no ${LIBRARY}: Intel's OpenCL is not installed, run cmake/intel_opencl.sh")
+  return()
+endif()
+set(ENV{OCL_ICD_VENDORS} "${LIBRARY}")
+set(ENV{APSL_TEST_PLATFORM} "Intel(R) OpenCL")
+unset(ENV{APSL_TEST_DEVICE})
+execute_process(COMMAND "${PROGRAM}" "${TESTS}" --warn NoTests RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "the tests failed on Intel's OpenCL with ${result}")
+endif()

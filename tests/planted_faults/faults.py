@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""The faults that planted_faults.py puts into a copy of the sources, one at a time, and the check that must see each."""
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Check:
+    """A command in the copy's root. `target`: what is built for it, of `preset`; none for a script."""
+    name: str
+    command: tuple
+    preset: str = ""
+    target: str = ""
+
+
+@dataclass(frozen=True)
+class Fault:
+    what: str
+    file: str
+    old: str  # stands in the file exactly once
+    new: str
+    check: Check
+    says: str  # a regular expression in the output of the failed check
+
+
+def catch(name, preset, program, folder, selection, environment=()):
+    return Check(name, ("env", *environment, f"build/{preset}/tests/{folder}/{program}", selection), preset, program)
+
+
+def ctest(name, preset, target, pattern):
+    return Check(name, ("ctest", "--preset", preset, "--output-on-failure", "-R", pattern), preset, target)
+
+
+def oclgrind(name, program, folder, selection, uninitialized="0"):
+    return Check(name, ("cmake", f"-DPROGRAM=build/ci/tests/{folder}/{program}", f"-DTESTS={selection}",
+                        "-DOCLGRIND=/usr/lib/oclgrind/liboclgrind-rt-icd.so", f"-DUNINITIALIZED={uninitialized}",
+                        "-DLOG=build/oclgrind.log", "-P", "tests/implementations/oclgrind.cmake"), "ci", program)
+
+
+KERNEL_TESTS = ("ci", "apsl_kernel_tests", "kernels")
+OCLGRIND_FILTER = oclgrind("Oclgrind, bounds", "apsl_filter_tests", "filter", "[scalar]")
+OCLGRIND_RACES = oclgrind("Oclgrind, races", "apsl_kernel_tests", "kernels", "[end_call]")
+OCLGRIND_VALUES = oclgrind("Oclgrind, uninitialised values", "apsl_kernel_tests", "kernels",
+                           "gather_displacements: keeps the greatest residual*", "1")
+ASAN_EMBED = ctest("AddressSanitizer", "asan-library", "apsl_embed_tests", "apsl_embed_tests: ?the C interface does")
+LEAKS_EMBED = ctest("LeakSanitizer", "asan-library", "apsl_embed_tests", "apsl_embed_tests: ?the C interface: every")
+UBSAN_EMBED = ctest("UndefinedBehaviorSanitizer", "asan-library", "apsl_embed_tests", "apsl_embed_tests: ?scratch_bytes")
+TSAN = ctest("ThreadSanitizer", "tsan", "apsl_thread_tests", "apsl_thread_tests: ?the C interface")
+
+FAULTS = (
+    Fault("a swapped index: two corners of a triangle store the same gradient",
+          "kernels/triangle_assembly.h", "pack_gradient(triangle, 1, scale, words + 2)",
+          "pack_gradient(triangle, 2, scale, words + 2)",
+          catch("kernel tests against the reference", *KERNEL_TESTS, "[assemble_gradients]"), r"FAILED"),
+    Fault("a lost sign: vertices move against the correction",
+          "kernels/vertex_motion.h", "predicted[i] = x - sqrt(2.0f * x.w)", "predicted[i] = x + sqrt(2.0f * x.w)",
+          catch("kernel tests against the reference", *KERNEL_TESTS, "[gather_displacements]"), r"FAILED"),
+    Fault("a group of 64 is taken to run in lockstep: the sum of its last two items lacks a barrier",
+          "kernels/work_group.h",
+          "        if (l < half_size) scratch[l] += scratch[l + half_size];\n        barrier(CLK_LOCAL_MEM_FENCE);",
+          "        if (l < half_size) scratch[l] += scratch[l + half_size];\n"
+          "        if (half_size > 1) barrier(CLK_LOCAL_MEM_FENCE);",
+          OCLGRIND_RACES, r"(?i)data race"),
+    Fault("an element past the end of a buffer is read",
+          "kernels/vertex_motion.h",
+          "    const apsl_range range = share_of(cloth.vertex_count, true);\n"
+          "    for (uint v = range.first; v < range.end;",
+          "    const apsl_range range = share_of(cloth.vertex_count, true);\n"
+          "    for (uint v = range.first; v <= range.end;",
+          OCLGRIND_FILTER, r"Invalid read"),
+    Fault("local memory is read where half of it was never written",
+          "kernels/work_group.h",
+          "    scratch[l] = value;\n    barrier(CLK_LOCAL_MEM_FENCE);\n"
+          "    for (uint half_size = APSL_WORK_GROUP_SIZE / 2; half_size > 0; half_size >>= 1) {\n"
+          "        if (l < half_size) scratch[l] += ",
+          "    if (l < APSL_WORK_GROUP_SIZE / 2) scratch[l] = value;\n    barrier(CLK_LOCAL_MEM_FENCE);\n"
+          "    for (uint half_size = APSL_WORK_GROUP_SIZE / 2; half_size > 0; half_size >>= 1) {\n"
+          "        if (l < half_size) scratch[l] += ",
+          OCLGRIND_VALUES, r"Uninitialized value"),
+    Fault("four bytes past the end of a host array are uploaded",
+          "host/limiter_implementation.hpp", "return buffer(contents.size() * sizeof(Value), contents.data());",
+          "return buffer(contents.size() * sizeof(Value) + 4, contents.data());",
+          ASAN_EMBED, r"heap-buffer-overflow"),
+    Fault("a topology is never deleted", "host/c_interface.cpp",
+          "void apsl_topology_destroy(apsl_topology* topology) {\n    delete topology;",
+          "void apsl_topology_destroy(apsl_topology* topology) {\n    (void)topology;",
+          LEAKS_EMBED, r"LeakSanitizer: detected memory leaks"),
+    Fault("a shift past the width of its type", "src/csr_pattern.cpp", "code |= corner << (2 * k);",
+          "code |= corner << (16 * k);", UBSAN_EMBED, r"runtime error: shift exponent 32"),
+    Fault("an event is retained once too often", "host/kernel_launch.cpp",
+          "    if (out_of_order_) previous_ = EventHandle(event);",
+          "    if (out_of_order_) clRetainEvent(event);\n    if (out_of_order_) previous_ = EventHandle(event);",
+          catch("counts of OpenCL references", "ci", "apsl_embed_tests", "embed", "an enqueue that fails*"),
+          r"events"),
+    Fault("the last error is shared between threads", "host/c_interface.cpp",
+          "thread_local std::string message;", "static std::string message;",
+          TSAN, r"ThreadSanitizer: data race"),
+    Fault("a constant in double precision", "kernels/vertex_motion.h",
+          "correction * (1.0f / parameters.time_step)", "correction * (float)(1.0 / parameters.time_step)",
+          Check("AMD gate", ("/usr/bin/python3", "tests/amd/check_kernels.py", "--jobs", "2")), r"double"),
+    Fault("the filter corrects one part in a thousand too much", "kernels/vertex_motion.h",
+          "correction * (1.0f / parameters.time_step)", "correction * (1.001f / parameters.time_step)",
+          catch("kernel tests against the reference", *KERNEL_TESTS, "[update_velocities]"), r"FAILED"),
+)

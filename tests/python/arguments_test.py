@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: MIT
+"""What arguments are taken, and the line that refuses the rest."""
+
+import pickle
+import sys
+import unittest
+
+import numpy as np
+
+import apsl
+from cloth import CORNER, ONE_TRIANGLE, Grid, limiter
+
+
+class Taken(unittest.TestCase):
+    def test_any_layout_of_the_same_numbers_gives_the_same_bytes(self):
+        cloth = Grid(6)
+        cloth.rest_areas = cloth.rest_areas.astype(np.float32)
+        expected = limiter(cloth.triangles, cloth.vertex_count).limit(*cloth.arrays())[0].tobytes()
+        variants = {
+            "64 bits": [array.astype(np.float64) for array in cloth.arrays()],
+            "column by column": [np.asfortranarray(array) for array in cloth.arrays()],
+            "with gaps": [np.repeat(array, 2, axis=0)[::2] for array in cloth.arrays()],
+            "backwards": [array[::-1].copy()[::-1] for array in cloth.arrays()],
+            "other byte order": [array.astype(">f4") for array in cloth.arrays()],
+            "lists": [array.tolist() for array in cloth.arrays()],
+        }
+        for name, arrays in variants.items():
+            for triangles in (cloth.triangles.astype(np.uint8), cloth.triangles.tolist(),
+                              np.asfortranarray(cloth.triangles)):
+                with self.subTest(name, triangles=type(triangles)):
+                    limited, _ = limiter(triangles, np.int64(cloth.vertex_count)).limit(*arrays)
+                    self.assertEqual(limited.tobytes(), expected)
+
+    def test_arguments_stay_as_they_were_and_the_result_is_new(self):
+        cloth = Grid(6)
+        given = [array.copy() for array in cloth.arrays()]
+        made = limiter(cloth.triangles, cloth.vertex_count)
+        first, _ = made.limit(*cloth.arrays())
+        for before, after in zip(given, cloth.arrays()):
+            np.testing.assert_array_equal(before, after)
+        kept = first.copy()
+        made.limit(*cloth.arrays(), sub_steps=1)
+        np.testing.assert_array_equal(first, kept)
+        self.assertEqual((first.dtype, first.shape), (np.float32, cloth.positions.shape))
+        self.assertTrue(first.flags["C_CONTIGUOUS"] and first.flags["WRITEABLE"])
+
+    def test_every_parameter_is_taken_at_its_default(self):
+        cloth = Grid(6)
+        made = limiter(cloth.triangles, cloth.vertex_count)
+        defaults = made.default_parameters()
+        self.assertEqual(made.limit(*cloth.arrays())[0].tobytes(), made.limit(*cloth.arrays(), **defaults)[0].tobytes())
+        self.assertEqual(set(defaults), set(apsl.Parameters.__annotations__))
+
+    def test_every_resolved_option_is_taken(self):
+        options = limiter(ONE_TRIANGLE, 3).options
+        self.assertEqual(limiter(ONE_TRIANGLE, 3, **options).options, options)
+        self.assertEqual(set(options), set(apsl.Options.__annotations__))
+
+
+class Refused(unittest.TestCase):
+    def setUp(self):
+        self.limiter = limiter(ONE_TRIANGLE, 3)
+        self.arguments = {"positions": CORNER, "velocities": 0 * CORNER, "inverse_masses": [1, 1, 1],
+                          "rest_areas": [0.5]}
+
+    def refuse(self, line, call, *arguments, code="invalid_argument", **named):
+        with self.assertRaises(apsl.Error) as caught:
+            call(*arguments, **named)
+        self.assertIn(line, str(caught.exception))
+        self.assertNotIn("\n", str(caught.exception))
+        self.assertEqual(caught.exception.code, code)
+
+    def test_arrays(self):
+        for name, value, line in [
+            ("positions", CORNER[:2], "positions: got shape (2, 3), expected (3, 3)"),
+            ("positions", CORNER[:, :2], "positions: got shape (3, 2), expected (3, 3)"),
+            ("velocities", CORNER.ravel(), "velocities: got shape (9,), expected (3, 3)"),
+            ("velocities", CORNER * 1j, "velocities: got dtype complex64, expected an array of real numbers"),
+            ("inverse_masses", [[1, 1, 1]], "inverse_masses: got shape (1, 3), expected (3,)"),
+            ("inverse_masses", [True] * 3, "inverse_masses: got dtype bool, expected an array of real numbers"),
+            ("rest_areas", ["a"], "rest_areas: got dtype <U1, expected an array of real numbers"),
+            ("rest_areas", 0.5, "rest_areas: got shape (), expected (1,)"),
+            ("rest_areas", None, "rest_areas: got dtype object, expected an array of real numbers"),
+        ]:
+            with self.subTest(line):
+                self.refuse(line, self.limiter.limit, **{**self.arguments, name: value})
+
+    def test_parameters(self):
+        for named, line in [
+            ({"sub_steps": 3.5}, "sub_steps: got 3.5, expected an integer"),
+            ({"sub_steps": True}, "sub_steps: got True, expected an integer"),
+            ({"sub_steps": 2**31}, "sub_steps: got 2147483648, expected an integer"),
+            ({"sub_steps": -1}, "sub_steps"),
+            ({"time_step": "1"}, "time_step: got '1', expected a number"),
+            ({"time_step": 0}, "time_step"),
+            ({"regularization": 0.9}, "regularization"),
+            ({"regularization": [1.2]}, "regularization: got [1.2], expected a number"),
+        ]:
+            with self.subTest(line):
+                self.refuse(line, self.limiter.limit, **self.arguments, **named)
+        with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'sub_step', expected .*sub_steps"):
+            self.limiter.limit(**self.arguments, sub_step=3)
+
+    def test_the_limiter_stays_usable(self):
+        self.refuse("time_step", self.limiter.limit, **self.arguments, time_step=-1)
+        self.assertEqual(self.limiter.limit(**self.arguments)[1].status, "ok")
+
+    def test_a_map_of_regularization_where_it_is_compiled_in(self):
+        mapped = limiter(ONE_TRIANGLE, 3, regularization_per_triangle=True)
+        self.refuse("regularization: got nothing, expected an array", mapped.limit, **self.arguments)
+        self.refuse("regularization: got shape (2,), expected (1,)", mapped.limit, **self.arguments,
+                    regularization=[2, 2])
+
+    def test_triangles(self):
+        for triangles, line in [
+            ([[0, 1, 2.5]], "triangles: got dtype float64, expected an array of integers"),
+            ([0, 1, 2], "triangles: got shape (3,), expected (triangles, 3)"),
+            ([[0, 1, 2], [0, 1, -1]], "triangles: got vertex -1 in triangle 1"),
+            ([[0, 1, 2**32]], "triangles: got vertex 4294967296 in triangle 0"),
+        ]:
+            with self.subTest(line):
+                self.refuse(line, limiter, triangles, 3)
+        self.refuse("names vertex 3", limiter, [[0, 1, 3]], 3, code="invalid_mesh")
+        self.refuse("triangle 0", limiter, [[0, 1, 1]], 3, code="invalid_mesh")
+        self.refuse("triangles", limiter, np.zeros((0, 3), int), 3, code="invalid_mesh")
+
+    def test_limiters(self):
+        self.refuse("vertex_count: got -3, expected an integer", limiter, ONE_TRIANGLE, -3)
+        self.refuse("matrix: got 'dense', expected one of 'consistent', 'printed'", limiter, ONE_TRIANGLE, 3,
+                    matrix="dense")
+        self.refuse("work_group_size", limiter, ONE_TRIANGLE, 3, work_group_size=3)
+        self.refuse(f"device: got {len(apsl.devices())}, expected 0 to", apsl.StrainLimiter, ONE_TRIANGLE, 3,
+                    device=len(apsl.devices()))
+        self.refuse("device: got 'gpu', expected an integer", apsl.StrainLimiter, ONE_TRIANGLE, 3, device="gpu")
+        with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'strides'"):
+            limiter(ONE_TRIANGLE, 3, strides=4)
+
+    def test_measures(self):
+        self.refuse("triangles: got vertex 3 in triangle 0, expected 0 to 2", apsl.rest_areas, CORNER, [[0, 1, 3]])
+        self.refuse("positions: got shape (3,), expected (vertices, 3)", apsl.rest_areas, [1, 2, 3], ONE_TRIANGLE)
+        self.refuse("rest_areas: got shape (2,), expected (1,)", apsl.area_change, CORNER, ONE_TRIANGLE, [1, 1])
+
+    def test_an_error_can_be_sent_to_another_process(self):
+        error = pickle.loads(pickle.dumps(apsl.Error("line", "opencl", -5, "log")))
+        self.assertEqual((str(error), error.code, error.opencl_code, error.build_log), ("line", "opencl", -5, "log"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""What limit() and the measures return, by hand values."""
+
+import sys
+import unittest
+
+import numpy as np
+
+import apsl
+from cloth import CORNER, ONE_TRIANGLE, TIME_STEP, Grid, device, limiter
+
+
+class OneTriangle(unittest.TestCase):
+    """Vertices 0 and 2 pinned; vertex 1 moves along x, which changes the area in proportion."""
+
+    def limit(self, speed, **parameters):
+        velocities = np.array([[0, 0, 0], [speed, 0, 0], [0, 0, 0]], np.float32)
+        plain = {"time_step": TIME_STEP, "first_regularization": 0, "adaptive_iterations": 0, **parameters}
+        return limiter(ONE_TRIANGLE, 3, kept_pressures=0).limit(CORNER, velocities, [0, 2, 0], [0.5], **plain)
+
+    def test_without_regularization_one_sub_step_restores_the_area(self):
+        velocities, stats = self.limit(32, regularization=1, sub_steps=1)  # to x = 1.5, area 3/4
+        np.testing.assert_allclose(velocities, 0, atol=1e-4)
+        self.assertLess(stats.max_area_change, 1e-6)
+        self.assertEqual((stats.sub_steps, stats.status), (1, "ok"))
+
+    def test_regularization_divides_the_correction(self):
+        velocities, stats = self.limit(32, regularization=2, sub_steps=1)
+        np.testing.assert_allclose(velocities, [[0, 0, 0], [16, 0, 0], [0, 0, 0]], atol=1e-3)
+        self.assertAlmostEqual(stats.max_area_change, 0.25, delta=1e-5)
+        self.assertAlmostEqual(stats.rms_area_change, 0.25, delta=1e-5)
+
+    def test_compressed_is_restored_too(self):
+        velocities, _ = self.limit(-32, regularization=2, sub_steps=1)
+        np.testing.assert_allclose(velocities[1], [-16, 0, 0], atol=1e-3)
+
+    def test_no_sub_steps_changes_nothing(self):
+        velocities, stats = self.limit(32, sub_steps=0)
+        np.testing.assert_array_equal(velocities[1], [32, 0, 0])
+        self.assertEqual(stats.sub_steps, 0)
+
+
+class Cloth(unittest.TestCase):
+    def test_area_change_shrinks_to_what_stats_say(self):
+        cloth = Grid(12)
+        velocities, stats = limiter(cloth.triangles, cloth.vertex_count).limit(*cloth.arrays(), time_step=TIME_STEP)
+        before = apsl.area_change(cloth.positions + TIME_STEP * cloth.velocities, cloth.triangles, cloth.rest_areas)
+        after = apsl.area_change(cloth.positions + TIME_STEP * velocities, cloth.triangles, cloth.rest_areas)
+        self.assertLess(after.max(), 0.5 * before.max())
+        self.assertAlmostEqual(after.max(), stats.max_area_change, delta=1e-4)
+        weights = cloth.rest_areas / cloth.rest_areas.sum()
+        self.assertAlmostEqual(np.sqrt((weights * after**2).sum()), stats.rms_area_change, delta=0.02 * after.max())
+
+    def test_pinned_velocities_come_back_bit_for_bit(self):
+        cloth = Grid(12)
+        velocities, _ = limiter(cloth.triangles, cloth.vertex_count).limit(*cloth.arrays(), time_step=TIME_STEP)
+        self.assertEqual(velocities[cloth.pins].tobytes(), cloth.velocities[cloth.pins].tobytes())
+        self.assertFalse((velocities == cloth.velocities).all())
+
+    def test_vertices_in_no_triangle_are_left_alone(self):
+        velocities = np.array([[0, 0, 0], [32, 0, 0], [0, 0, 0], [5, 6, 7]], np.float32)
+        positions = np.vstack([CORNER, [[9, 9, 9]]])
+        limited, _ = limiter(ONE_TRIANGLE, 4).limit(positions, velocities, [1, 1, 1, 1], [0.5])
+        np.testing.assert_array_equal(limited[3], [5, 6, 7])
+
+    def test_not_finite_is_a_status_and_velocities_come_back_as_given(self):
+        cloth = Grid(6)
+        for value in (np.nan, np.inf):
+            cloth.positions[7, 1] = value
+            velocities, stats = limiter(cloth.triangles, cloth.vertex_count).limit(*cloth.arrays())
+            self.assertEqual(stats.status, "diverged")
+            self.assertEqual(velocities.tobytes(), cloth.velocities.tobytes())
+
+    def test_budget_used_up_is_a_status(self):
+        cloth = Grid(12)
+        _, stats = limiter(cloth.triangles, cloth.vertex_count).limit(
+            *cloth.arrays(), regularization=1.001, tolerance=1e-6, max_iterations=1, sub_steps=1)
+        self.assertEqual(stats.status, "not_converged")
+
+    def test_regularization_per_triangle(self):
+        cloth = Grid(6)
+        by_number, _ = limiter(cloth.triangles, cloth.vertex_count).limit(*cloth.arrays(), regularization=2)
+        mapped = limiter(cloth.triangles, cloth.vertex_count, regularization_per_triangle=True)
+        by_array, _ = mapped.limit(*cloth.arrays(), regularization=np.full(len(cloth.triangles), 2.0))
+        np.testing.assert_allclose(by_array, by_number, rtol=1e-5, atol=1e-5)
+        uneven, _ = mapped.limit(*cloth.arrays(), regularization=np.linspace(1.1, 50, len(cloth.triangles)))
+        self.assertGreater(np.abs(uneven - by_number).max(), 1e-3)
+
+
+class Measures(unittest.TestCase):
+    def test_rest_areas(self):
+        positions = [[0, 0, 0], [3, 0, 0], [0, 4, 0], [0, 0, 5], [6, 0, 0]]
+        np.testing.assert_allclose(apsl.rest_areas(positions, [[0, 1, 2], [2, 0, 3], [0, 1, 4]]), [6, 10, 0])
+
+    def test_area_change_is_relative_unsigned_and_zero_without_rest_area(self):
+        triangles = [[0, 1, 2]] * 5
+        change = apsl.area_change(CORNER, triangles, [0.5, 0.25, 1.0, 0.0, -1.0])
+        np.testing.assert_allclose(change, [0, 1, 0.5, 0, 0])
+
+    def test_devices_are_numbered_in_order(self):
+        found = apsl.devices()
+        self.assertEqual([entry.number for entry in found], list(range(len(found))))
+        self.assertTrue(found)
+        self.assertTrue(all(entry.name and entry.compute_units > 0 and entry.memory > 0 for entry in found))
+        self.assertIn(device(), found)
+
+    def test_options_are_resolved(self):
+        made = limiter(ONE_TRIANGLE, 3, execution="many_groups", kept_pressures=2)
+        self.assertEqual((made.options["execution"], made.options["kept_pressures"]), ("many_groups", 2))
+        self.assertGreater(made.options["work_group_size"], 0)
+        self.assertGreater(made.scratch_bytes, limiter(ONE_TRIANGLE, 3, execution="many_groups").scratch_bytes)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

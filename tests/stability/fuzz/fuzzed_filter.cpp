@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "stability/fuzz/fuzzed_filter.hpp"
+
+#include <apsl/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace apsl::test {
+namespace {
+
+std::vector<std::shared_ptr<const Topology>> topologies_of(const FuzzCase& c) {
+    std::vector<std::shared_ptr<const Topology>> topologies;
+    for (const MovingCloth& cloth : c.cloths) topologies.push_back(cloth.topology);
+    return topologies;
+}
+
+bool same_options(const Options& a, const Options& b) {
+    return a.matrix == b.matrix && a.apply == b.apply && a.execution == b.execution &&
+           a.work_group_size == b.work_group_size && a.position_stride == b.position_stride &&
+           a.velocity_stride == b.velocity_stride && a.regularization_per_triangle == b.regularization_per_triangle &&
+           a.kept_pressures == b.kept_pressures;
+}
+
+}  // namespace
+
+DeviceFilter::DeviceFilter(const FuzzCase& c)
+    : options_(c.options),
+      offset_(c.offset),
+      topologies_(topologies_of(c)),
+      limiter_(std::make_unique<StrainLimiter>(device().context, device().id, topologies_, options_)) {
+}
+
+bool DeviceFilter::fits(const FuzzCase& c) const {
+    return !remembers(c) && same_options(c.options, options_) && topologies_of(c) == topologies_;
+}
+
+std::vector<Filtered> DeviceFilter::call(const std::vector<MovingCloth>& cloths,
+                                         std::span<const Parameters> parameters) {
+    const CallerBuffers buffers(cloths, options_, offset_);
+    const DeviceArray<float>* const inputs[] = {&buffers.positions, &buffers.inverse_masses, &buffers.rest_areas,
+                                                &buffers.regularization};
+    std::vector<std::vector<float>> given;
+    for (const auto* input : inputs) given.push_back(input->read());
+    const std::vector<Stats> stats = filter(*limiter_, buffers, parameters);
+    for (std::size_t n = 0; n < given.size(); ++n)
+        if (!same_bytes(inputs[n]->read(), given[n])) throw std::runtime_error("an input buffer was written to");
+
+    const std::vector<float> velocities = buffers.read_velocities();
+    std::vector<Filtered> results;
+    auto begin = velocities.begin();
+    for (std::size_t n = 0; n < cloths.size(); ++n) {
+        const auto end = begin + static_cast<std::ptrdiff_t>(cloths[n].velocities.size());
+        results.push_back({{begin, end}, stats[n]});
+        begin = end;
+    }
+    return results;
+}
+
+template <class Real>
+ReferenceFilter<Real>::ReferenceFilter(const FuzzCase& c)
+    : regularization_per_triangle_(c.options.regularization_per_triangle) {
+    for (const MovingCloth& cloth : c.cloths)
+        limiters_.emplace_back(cloth.topology, c.options.matrix, c.options.kept_pressures);
+}
+
+template <class Real>
+std::vector<Filtered> ReferenceFilter<Real>::call(const std::vector<MovingCloth>& cloths,
+                                                  std::span<const Parameters> parameters) {
+    std::vector<Filtered> results;
+    for (std::size_t n = 0; n < cloths.size(); ++n) {
+        const MovingCloth& cloth = cloths[n];
+        const auto real = [](const std::vector<double>& numbers) {
+            return std::vector<Real>(numbers.begin(), numbers.end());
+        };
+        const std::vector<Real> positions = real(cloth.positions), masses = real(cloth.inverse_masses),
+                                areas = real(cloth.rest_areas);
+        const std::vector<Real> alpha = regularization_per_triangle_ ? real(cloth.regularization) : std::vector<Real>{};
+        std::vector<Real> velocities = real(cloth.velocities);
+        const bool refused = refused_by_reference(cloth);
+        try {
+            limiters_[n].enqueue({positions, velocities, masses, areas, alpha}, parameters[n]);
+            if (refused) throw std::runtime_error("took what it has to refuse");
+        } catch (const Error& error) {
+            if (!refused) throw;
+            if (std::string(error.what()).find('\n') != std::string::npos)
+                throw std::runtime_error("an error of several lines");
+            results.push_back({cloth.velocities, {}});
+            results.back().stats.status = Status::diverged;
+            continue;
+        }
+        results.push_back({{velocities.begin(), velocities.end()}, limiters_[n].read_stats()});
+    }
+    return results;
+}
+
+bool refused_by_reference(const MovingCloth& cloth) {
+    const auto any = [](const std::vector<double>& numbers, auto bad) {
+        return std::any_of(numbers.begin(), numbers.end(), bad);
+    };
+    return any(cloth.inverse_masses, [](double w) { return !std::isfinite(w) || w < 0.0; }) ||
+           any(cloth.rest_areas, [](double area) { return !std::isfinite(area) || area <= 0.0; });
+}
+
+template class ReferenceFilter<double>;
+template class ReferenceFilter<float>;
+
+}  // namespace apsl::test
