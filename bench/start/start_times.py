@@ -69,11 +69,14 @@ def main():
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory(dir="/dev/shm") as memory:
         figures, kept = measure([given.program, *passed_on], Path(folder), Path(memory) / "cache",
                                 given.repetitions)
-    print("| start | " + " | ".join(name for name, _ in COLUMNS) + " |")
-    print("|---" * (len(COLUMNS) + 1) + "|")
+    until_first = {row: statistics.median(one["construction_seconds"] + one["first_call_seconds"] for one in starts)
+                   for row, starts in figures.items()}
+    print("| start | " + " | ".join(name for name, _ in COLUMNS) + " | until the first call is done |")
+    print("|---" * (len(COLUMNS) + 2) + "|")
     for row, starts in figures.items():
         medians = (1e3 * statistics.median(one[field] for one in starts) for _, field in COLUMNS)
-        print(f"| {row} | " + " | ".join(f"{ms:.1f}" for ms in medians) + " |")
+        share = 100.0 * until_first[row] / until_first[STARTS[0][0]]
+        print(f"| {row} | " + " | ".join(f"{ms:.1f}" for ms in medians) + f" | {share:.1f} % |")
     after = kept["after"]
     print(f"\n{after['triangles']} triangles; binary of {after['binary_bytes']} bytes, asked for in "
           f"{after['asking_seconds']:.1f} s ({kept['before']['binary_bytes']} bytes before the first call)")
