@@ -2,6 +2,7 @@
 #include <apsl/apsl.h>
 #include <apsl/strain_limiter.hpp>
 
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
@@ -26,6 +27,8 @@ static_assert(static_cast<int>(apsl::Matrix::printed) == APSL_MATRIX_PRINTED);
 static_assert(static_cast<int>(apsl::Apply::matrix_free) == APSL_APPLY_MATRIX_FREE);
 static_assert(static_cast<int>(apsl::Execution::many_groups) == APSL_EXECUTION_MANY_GROUPS);
 static_assert(static_cast<int>(apsl::Execution::one_group) == APSL_EXECUTION_ONE_GROUP);
+
+static_assert(static_cast<int>(apsl::ProgramBinaryUse::refused_by_driver) == APSL_PROGRAM_BINARY_REFUSED_BY_DRIVER);
 
 std::string& last_error() {
     thread_local std::string message;
@@ -144,17 +147,25 @@ void apsl_topology_destroy(apsl_topology* topology) {
 
 apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
                                 size_t cloth_count, const apsl_limiter_options* options, apsl_limiter** limiter) {
+    return apsl_limiter_create_from_binary(context, device, cloths, cloth_count, options, nullptr, 0, limiter);
+}
+
+apsl_result apsl_limiter_create_from_binary(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
+                                            size_t cloth_count, const apsl_limiter_options* options, const void* binary,
+                                            size_t size, apsl_limiter** limiter) {
     return guarded([&] {
         require(limiter, "limiter");
         *limiter = nullptr;
         if (cloth_count > 0) require(cloths, "cloths");
+        if (size > 0) require(binary, "binary");
         std::vector<std::shared_ptr<const apsl::Topology>> topologies;
         for (size_t c = 0; c < cloth_count; ++c) {
             require(cloths[c], "a cloth's topology");
             topologies.push_back(cloths[c]->topology);
         }
-        *limiter = new apsl_limiter{
-            apsl::StrainLimiter(context, device, topologies, options ? options_from(*options) : apsl::Options{})};
+        *limiter = new apsl_limiter{apsl::StrainLimiter(context, device, topologies,
+                                                        options ? options_from(*options) : apsl::Options{},
+                                                        {static_cast<const std::byte*>(binary), size})};
     });
 }
 
@@ -164,6 +175,26 @@ void apsl_limiter_destroy(apsl_limiter* limiter) {
 
 size_t apsl_limiter_scratch_bytes(const apsl_limiter* limiter) {
     return limiter ? limiter->limiter.scratch_bytes() : 0;
+}
+
+apsl_result apsl_limiter_program_binary(const apsl_limiter* limiter, void* binary, size_t capacity, size_t* size) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        require(size, "size");
+        const std::vector<std::byte> bytes = limiter->limiter.program_binary();
+        *size = bytes.size();
+        if (!binary || bytes.empty()) return;
+        if (capacity < bytes.size())
+            throw apsl::Error(apsl::ErrorCode::invalid_argument, "capacity is " + std::to_string(capacity) +
+                                                                     ", expected at least the binary's " +
+                                                                     std::to_string(bytes.size()) + " bytes");
+        std::memcpy(binary, bytes.data(), bytes.size());
+    });
+}
+
+apsl_program_binary_use apsl_limiter_program_binary_use(const apsl_limiter* limiter) {
+    return limiter ? static_cast<apsl_program_binary_use>(limiter->limiter.program_binary_use())
+                   : APSL_PROGRAM_BINARY_NONE_GIVEN;
 }
 
 apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, const apsl_limiter_buffers* buffers,

@@ -55,19 +55,38 @@ void check_topologies(std::span<const std::shared_ptr<const Topology>> cloths) {
 
 }  // namespace
 
-StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id device,
+StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id the_device,
                                               std::span<const std::shared_ptr<const Topology>> topologies,
-                                              const Options& requested)
-    : facts(device_facts(device)), context(the_context) {
+                                              const Options& requested, std::span<const std::byte> program_binary)
+    : facts(device_facts(the_device)), context(the_context), device(the_device) {
     check_topologies(topologies);
     options = resolve(requested, facts, topologies);
     largest_cloth = largest_triangle_count(topologies);
     const Adjacency adjacency = build_adjacency(topologies, options.matrix, uses_pattern(options),
                                                 patch_triangles(facts, options, largest_cloth));
-    program = build_program(context, device, program_source(kernel_files(options)),
-                            build_options(options, adjacency.max_patch_vertices));
+    create_program(adjacency.max_patch_vertices, program_binary);
     create_buffers(adjacency);
     create_kernels();
+}
+
+void StrainLimiter::Implementation::create_program(std::uint32_t max_patch_vertices,
+                                                   std::span<const std::byte> binary) {
+    const std::string source = program_source(kernel_files(options));
+    const std::string flags = build_options(options, max_patch_vertices);
+    program_fingerprint = host::program_fingerprint(device, source, flags);
+    const UnpackedBinary unpacked = unpack_binary(binary, program_fingerprint);
+    binary_use = unpacked.use;
+    if (binary_use == ProgramBinaryUse::taken) {
+        program = load_program(context, device, unpacked.driver_binary, flags);
+        if (program) return;
+        binary_use = ProgramBinaryUse::refused_by_driver;
+    }
+    program = build_program(context, device, source, flags);
+}
+
+std::vector<std::byte> StrainLimiter::Implementation::program_binary() const {
+    const std::vector<std::byte> binary = driver_binary(program.get(), device);
+    return binary.empty() ? binary : pack_binary(program_fingerprint, binary);
 }
 
 BufferHandle StrainLimiter::Implementation::buffer(std::size_t size, const void* contents) {

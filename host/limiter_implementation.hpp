@@ -5,6 +5,7 @@
 #include "handles.hpp"
 #include "kernel_launch.hpp"
 #include "limiter_plan.hpp"
+#include "program_binary.hpp"
 
 #include <apsl/strain_limiter.hpp>
 
@@ -18,7 +19,9 @@ namespace apsl {
 /// A kernel or buffer that the options do not need stays empty.
 struct StrainLimiter::Implementation {
     Implementation(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
-                   const Options& requested);
+                   const Options& requested, std::span<const std::byte> program_binary);
+
+    std::vector<std::byte> program_binary() const;
 
     cl_event enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,
                      std::span<const cl_event> wait_list);
@@ -26,6 +29,7 @@ struct StrainLimiter::Implementation {
     host::DeviceFacts facts;
     Options options;
     cl_context context;
+    cl_device_id device;
     std::uint32_t cloth_count = 0, vertex_count = 0, triangle_count = 0, rest_area_count = 0, groups = 1;
     std::size_t largest_cloth = 0;  ///< triangles
     std::size_t bytes = 0;
@@ -42,6 +46,8 @@ struct StrainLimiter::Implementation {
     std::vector<host::BufferHandle> pressures;
 
     host::ProgramHandle program;
+    host::Fingerprint program_fingerprint{};
+    ProgramBinaryUse binary_use = ProgramBinaryUse::none_given;
     host::Kernel set_parameters, predict_positions, order_triangle_values, assemble_gradients, measure_area_change,
         begin_call, start_walk, begin_solve, end_call;
     host::Kernel assemble_pressure_csr, apply_dot, cg_update, finish_solve, gather_displacements, update_velocities;
@@ -60,6 +66,7 @@ private:
     /// The padding of these is read by vector loads and must hold numbers.
     host::BufferHandle zeroed_buffer(std::size_t floats) { return upload(std::vector<float>(floats, 0.0f)); }
 
+    void create_program(std::uint32_t max_patch_vertices, std::span<const std::byte> binary);
     void create_buffers(const host::Adjacency& adjacency);
     void create_kernels();
     void create_apply_kernels();

@@ -7,13 +7,14 @@
 namespace apsl {
 
 StrainLimiter::StrainLimiter(cl_context context, cl_device_id device,
-                             std::span<const std::shared_ptr<const Topology>> cloths, const Options& options)
-    : implementation_(std::make_unique<Implementation>(context, device, cloths, options)) {
+                             std::span<const std::shared_ptr<const Topology>> cloths, const Options& options,
+                             std::span<const std::byte> program_binary)
+    : implementation_(std::make_unique<Implementation>(context, device, cloths, options, program_binary)) {
 }
 
 StrainLimiter::StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
-                             const Options& options)
-    : StrainLimiter(context, device, std::span(&cloth, 1), options) {
+                             const Options& options, std::span<const std::byte> program_binary)
+    : StrainLimiter(context, device, std::span(&cloth, 1), options, program_binary) {
 }
 
 StrainLimiter::~StrainLimiter() = default;
@@ -30,6 +31,14 @@ std::size_t StrainLimiter::cloth_count() const noexcept {
 
 const Options& StrainLimiter::options() const noexcept {
     return implementation_->options;
+}
+
+std::vector<std::byte> StrainLimiter::program_binary() const {
+    return implementation_->program_binary();
+}
+
+ProgramBinaryUse StrainLimiter::program_binary_use() const noexcept {
+    return implementation_->binary_use;
 }
 
 cl_event StrainLimiter::enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,

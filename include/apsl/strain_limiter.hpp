@@ -54,6 +54,16 @@ struct Buffers {
     BufferView regularization = {};  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
 };
 
+/// What became of the program binary given to a StrainLimiter. Unless taken, the program was built from source.
+enum class ProgramBinaryUse : std::int32_t {
+    none_given = 0,         ///< no bytes
+    taken = 1,              ///< nothing was compiled here
+    not_a_binary = 2,       ///< not from StrainLimiter::program_binary, cut short, or of another format version
+    other_program = 3,      ///< of other kernels, options, device or driver
+    damaged = 4,            ///< its bytes have changed
+    refused_by_driver = 5,  ///< sound as far as this library can tell
+};
+
 /// One kernel's share of the profiled commands (see StrainLimiter::profile).
 struct KernelTime {
     std::string name;           ///< of the kernel, as in kernels/
@@ -71,11 +81,12 @@ public:
     /// Compiles the kernels and uploads the adjacency of one or more cloths; the only place that waits.
     /// Throws Error: invalid_argument (no cloths, options out of range), unsupported (the device lacks what the options
     /// ask for), kernel_build, opencl.
+    /// `program_binary`: what program_binary() gave, tried in place of compiling; see program_binary_use().
     StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
-                  const Options& options = {});
+                  const Options& options = {}, std::span<const std::byte> program_binary = {});
     /// The same for one cloth.
     StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
-                  const Options& options = {});
+                  const Options& options = {}, std::span<const std::byte> program_binary = {});
     ~StrainLimiter();
     StrainLimiter(StrainLimiter&&) noexcept;             ///< what was moved from may only be assigned to or destroyed
     StrainLimiter& operator=(StrainLimiter&&) noexcept;  ///< likewise
@@ -86,6 +97,13 @@ public:
     std::size_t cloth_count() const noexcept;
     /// The options as resolved for the device (no zeros left).
     const Options& options() const noexcept;
+
+    /// The compiled program, for the constructor of a later limiter with the same kernels, options, largest patch,
+    /// device and driver. May take as long as compiling did. Best asked for after a call has completed: some drivers
+    /// compile at the first launch. Empty where the driver gives none.
+    std::vector<std::byte> program_binary() const;
+    /// What became of the binary given to the constructor.
+    ProgramBinaryUse program_binary_use() const noexcept;
 
     /// Queues one filter call. `parameters` holds one entry for every cloth, or a single one for all.
     /// The queue may be in-order or out-of-order. The returned event completes with the call; the caller releases it.
