@@ -83,7 +83,9 @@ APSL_INLINE void displace_vertices(apsl_cloth cloth, bool active, __global const
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint i = cloth.vertex_begin + v;
         const float4 x = predicted[i];
-        if (x.w > 0.0f) predicted[i] = x + displacement(x.w, corner_offsets, corners, gradients, pressure, i);
+        // One expression, which the compiler may fuse.
+        if (x.w > 0.0f)
+            predicted[i] = x - sqrt(2.0f * x.w) * sum_over_corners(corner_offsets, corners, gradients, pressure, i);
     }
 }
 

@@ -22,7 +22,8 @@ namespace apsl {
 struct Options {
     Matrix matrix = Matrix::consistent;  ///< what couples the pressures
     Apply apply = Apply::matrix_free;    ///< how it is applied
-    /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU kept_pressures 0.
+    /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU neither kept_pressures nor
+    /// regularization_per_triangle.
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;

@@ -66,7 +66,7 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
         facts.scaled_excess * std::sqrt(2.0 / (facts.smallest_alpha - 1.0) * facts.greatest_inverse_mass);
     const bool tame = options.matrix == Matrix::consistent && facts.smallest_alpha >= 1.01 &&
                       reach < 10.0 * facts.greatest_position && facts.max_change_error < 0.1;
-    if (diverged && facts.ordinary_numbers && tame)
+    if (diverged && facts.ordinary_numbers && !facts.must_diverge && tame)
         return broken(
             parameters.tolerance > 0.0f ? "ordinary input diverged" : "ordinary input diverged at tolerance 0",
             {{"greatest area change before", facts.max_before}});
