@@ -90,7 +90,7 @@ APSL_KERNEL void filter_in_one_group(
             sub_steps += 1;
             iterations += solve.iterations;
             if (solve.initial_residual > 0.0f)
-                worst_residual = fmax(worst_residual, sqrt(solve.residual / solve.initial_residual));
+                worst_residual = fmax(worst_residual, relative_residual(solve.residual, solve.initial_residual));
         }
     }
     broken = broken || bad_vertices > 0.0f;
