@@ -52,7 +52,9 @@ Execution resolve_execution(const Options& options, const DeviceFacts& facts, st
             if (!matrix_free_consistent(options))
                 invalid("execution is one_group, which needs the consistent matrix, matrix-free");
             if (!one_group_fits(options, facts))
-                throw Error(ErrorCode::unsupported, "execution is one_group, which takes kept_pressures and regularization_per_triangle on a CPU only");
+                throw Error(
+                    ErrorCode::unsupported,
+                    "execution is one_group, which takes kept_pressures and regularization_per_triangle on a CPU only");
             return options.execution;
     }
     invalid("unknown execution");
