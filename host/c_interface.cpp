@@ -2,6 +2,7 @@
 #include <apsl/apsl.h>
 #include <apsl/strain_limiter.hpp>
 
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
@@ -27,6 +28,8 @@ static_assert(static_cast<int>(apsl::Matrix::printed) == APSL_MATRIX_PRINTED);
 static_assert(static_cast<int>(apsl::Apply::matrix_free) == APSL_APPLY_MATRIX_FREE);
 static_assert(static_cast<int>(apsl::Execution::many_groups) == APSL_EXECUTION_MANY_GROUPS);
 static_assert(static_cast<int>(apsl::Execution::one_group) == APSL_EXECUTION_ONE_GROUP);
+
+static_assert(static_cast<int>(apsl::ProgramBinaryUse::refused_by_driver) == APSL_PROGRAM_BINARY_REFUSED_BY_DRIVER);
 
 std::string& last_error() {
     thread_local std::string message;
@@ -68,7 +71,9 @@ std::span<const cl_event> events(cl_uint wait_count, const cl_event* wait_list) 
     return {wait_list, wait_count};
 }
 
-apsl::Options options_from(const apsl_limiter_options& o) {
+/// The defaults where there are none.
+apsl::Options options_from(const apsl_limiter_options* options) {
+    const apsl_limiter_options o = options ? *options : apsl_limiter_default_options();
     return {.matrix = static_cast<apsl::Matrix>(o.matrix),
             .apply = static_cast<apsl::Apply>(o.apply),
             .execution = static_cast<apsl::Execution>(o.execution),
@@ -108,6 +113,17 @@ std::vector<std::shared_ptr<const apsl::Topology>> topologies_from(const apsl_to
         topologies.push_back(cloths[c]->topology);
     }
     return topologies;
+}
+
+void create(cl_context context, cl_device_id device, const apsl_topology* const* cloths, size_t cloth_count,
+            const apsl_limiter_options* options, const void* binary, size_t size, const apsl::BufferView& scratch,
+            apsl_limiter** limiter) {
+    require(limiter, "limiter");
+    *limiter = nullptr;
+    if (size > 0) require(binary, "binary");
+    *limiter = new apsl_limiter{apsl::StrainLimiter(context, device, topologies_from(cloths, cloth_count),
+                                                    options_from(options),
+                                                    {static_cast<const std::byte*>(binary), size}, scratch)};
 }
 
 /// To the caller, or released where nobody wants it.
@@ -173,18 +189,43 @@ void apsl_topology_destroy(apsl_topology* topology) {
 
 apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
                                 size_t cloth_count, const apsl_limiter_options* options, apsl_limiter** limiter) {
+    return apsl_limiter_create_from_binary(context, device, cloths, cloth_count, options, nullptr, 0, limiter);
+}
+
+apsl_result apsl_limiter_create_from_binary(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
+                                            size_t cloth_count, const apsl_limiter_options* options, const void* binary,
+                                            size_t size, apsl_limiter** limiter) {
+    return guarded([&] { create(context, device, cloths, cloth_count, options, binary, size, {}, limiter); });
+}
+
+apsl_result apsl_limiter_create_in_scratch(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
+                                           size_t cloth_count, const apsl_limiter_options* options, const void* binary,
+                                           size_t size, const apsl_buffer_view* scratch, apsl_limiter** limiter) {
     return guarded([&] {
-        require(limiter, "limiter");
-        *limiter = nullptr;
-        *limiter = new apsl_limiter{apsl::StrainLimiter(context, device, topologies_from(cloths, cloth_count),
-                                                        options ? options_from(*options) : apsl::Options{})};
+        if (limiter) *limiter = nullptr;
+        require(scratch, "scratch");
+        require(scratch->buffer, "scratch's buffer");
+        create(context, device, cloths, cloth_count, options, binary, size, view_from(*scratch), limiter);
     });
 }
 
-apsl_result apsl_limiter_rebuild(apsl_limiter* limiter, const apsl_topology* const* cloths, size_t cloth_count) {
+apsl_result apsl_limiter_required_scratch_bytes(cl_device_id device, const apsl_topology* const* cloths,
+                                                size_t cloth_count, const apsl_limiter_options* options,
+                                                size_t* bytes) {
+    return guarded([&] {
+        require(bytes, "bytes");
+        *bytes = 0;
+        *bytes = apsl::StrainLimiter::required_scratch_bytes(device, topologies_from(cloths, cloth_count),
+                                                             options_from(options));
+    });
+}
+
+apsl_result apsl_limiter_rebuild(apsl_limiter* limiter, const apsl_topology* const* cloths, size_t cloth_count,
+                                 const apsl_buffer_view* scratch) {
     return guarded([&] {
         require(limiter, "limiter");
-        limiter->limiter.rebuild(topologies_from(cloths, cloth_count));
+        limiter->limiter.rebuild(topologies_from(cloths, cloth_count),
+                                 scratch ? view_from(*scratch) : apsl::BufferView{});
     });
 }
 
@@ -194,6 +235,26 @@ void apsl_limiter_destroy(apsl_limiter* limiter) {
 
 size_t apsl_limiter_scratch_bytes(const apsl_limiter* limiter) {
     return limiter ? limiter->limiter.scratch_bytes() : 0;
+}
+
+apsl_result apsl_limiter_program_binary(const apsl_limiter* limiter, void* binary, size_t capacity, size_t* size) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        require(size, "size");
+        const std::vector<std::byte> bytes = limiter->limiter.program_binary();
+        *size = bytes.size();
+        if (!binary || bytes.empty()) return;
+        if (capacity < bytes.size())
+            throw apsl::Error(apsl::ErrorCode::invalid_argument, "capacity is " + std::to_string(capacity) +
+                                                                     ", expected at least the binary's " +
+                                                                     std::to_string(bytes.size()) + " bytes");
+        std::memcpy(binary, bytes.data(), bytes.size());
+    });
+}
+
+apsl_program_binary_use apsl_limiter_program_binary_use(const apsl_limiter* limiter) {
+    return limiter ? static_cast<apsl_program_binary_use>(limiter->limiter.program_binary_use())
+                   : APSL_PROGRAM_BINARY_NONE_GIVEN;
 }
 
 apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, const apsl_limiter_buffers* buffers,

@@ -3,6 +3,7 @@
 
 #include "stepping.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace apsl::host {
@@ -12,7 +13,8 @@ apsl_parameters device_parameters(const Parameters& p) {
     const float damping_step = scheduled ? std::log2((p.first_regularization - 1.0f) / (p.regularization - 1.0f)) /
                                                static_cast<float>(p.sub_steps - 1)
                                          : 0.0f;
-    const float tolerance = solve_tolerance(p);
+    // 32-bit residuals get no smaller than a few roundings of the right-hand side: beyond, iterations only add noise.
+    const float tolerance = std::max(solve_tolerance(p), 1e-6f);
     const bool on = p.enabled;
     return {.time_step = p.time_step,
             .regularization = p.regularization,

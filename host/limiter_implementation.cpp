@@ -76,19 +76,14 @@ Adjacency StrainLimiter::Implementation::plan(std::span<const std::shared_ptr<co
 
 StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_id the_device,
                                               std::span<const std::shared_ptr<const Topology>> topologies,
-                                              const Options& requested, const BufferView& scratch,
-                                              const Implementation* built)
+                                              const Options& requested, std::span<const std::byte> program_binary,
+                                              const BufferView& scratch, const Implementation* built)
     : Implementation(the_context, the_device, built ? built->facts : device_facts(the_device), scratch) {
     const Adjacency adjacency = plan(topologies, requested);
-    if (built && adjacency.max_patch_vertices <= built->patch_vertex_room) {
-        patch_vertex_room = built->patch_vertex_room;
-        check(clRetainProgram(built->program.get()), "keeping the kernel program");
-        program = ProgramHandle(built->program.get());
-    } else {
-        patch_vertex_room = room_for_patches(adjacency.max_patch_vertices);
-        program = build_program(context, device, program_source(kernel_files(options)),
-                                build_options(options, patch_vertex_room));
-    }
+    if (built && adjacency.max_patch_vertices <= built->patch_vertex_room)
+        share_program(*built);
+    else
+        create_program(adjacency.max_patch_vertices, program_binary);
     create_buffers(adjacency);
     create_kernels();
 }
@@ -98,6 +93,35 @@ std::size_t StrainLimiter::Implementation::required_scratch_bytes(
     Implementation counted(nullptr, device, device_facts(device), {});
     counted.create_buffers(counted.plan(topologies, requested));
     return counted.memory.required();
+}
+
+void StrainLimiter::Implementation::create_program(std::uint32_t max_patch_vertices,
+                                                   std::span<const std::byte> binary) {
+    patch_vertex_room = room_for_patches(max_patch_vertices);
+    const std::string source = program_source(kernel_files(options));
+    const std::string flags = build_options(options, patch_vertex_room);
+    program_fingerprint = host::program_fingerprint(device, source, flags);
+    const UnpackedBinary unpacked = unpack_binary(binary, program_fingerprint);
+    binary_use = unpacked.use;
+    if (binary_use == ProgramBinaryUse::taken) {
+        program = load_program(context, device, unpacked.driver_binary, flags);
+        if (program) return;
+        binary_use = ProgramBinaryUse::refused_by_driver;
+    }
+    program = build_program(context, device, source, flags);
+}
+
+void StrainLimiter::Implementation::share_program(const Implementation& built) {
+    check(clRetainProgram(built.program.get()), "keeping the kernel program");
+    program = ProgramHandle(built.program.get());
+    program_fingerprint = built.program_fingerprint;
+    binary_use = built.binary_use;
+    patch_vertex_room = built.patch_vertex_room;
+}
+
+std::vector<std::byte> StrainLimiter::Implementation::program_binary() const {
+    const std::vector<std::byte> binary = driver_binary(program.get(), device);
+    return binary.empty() ? binary : pack_binary(program_fingerprint, binary);
 }
 
 void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {

@@ -6,6 +6,7 @@
 #include "handles.hpp"
 #include "kernel_launch.hpp"
 #include "limiter_plan.hpp"
+#include "program_binary.hpp"
 
 #include <apsl/strain_limiter.hpp>
 
@@ -20,10 +21,13 @@ namespace apsl {
 struct StrainLimiter::Implementation {
     /// With the program of `built` where it fits; `built` may be null.
     Implementation(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
-                   const Options& requested, const BufferView& scratch, const Implementation* built = nullptr);
+                   const Options& requested, std::span<const std::byte> program_binary, const BufferView& scratch,
+                   const Implementation* built = nullptr);
     static std::size_t required_scratch_bytes(cl_device_id device,
                                               std::span<const std::shared_ptr<const Topology>> cloths,
                                               const Options& requested);
+
+    std::vector<std::byte> program_binary() const;
 
     cl_event enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,
                      std::span<const cl_event> wait_list);
@@ -51,6 +55,8 @@ struct StrainLimiter::Implementation {
     std::vector<host::BufferHandle> pressures;
 
     host::ProgramHandle program;
+    host::Fingerprint program_fingerprint{};
+    ProgramBinaryUse binary_use = ProgramBinaryUse::none_given;
     host::Kernel set_parameters, rest_areas, predict_positions, order_triangle_values, assemble_gradients,
         measure_area_change, begin_call, start_walk, begin_solve, end_call;
     host::Kernel assemble_pressure_csr, apply_dot, cg_update, finish_solve, gather_displacements, update_velocities;
@@ -76,6 +82,8 @@ private:
     /// The padding of these is read by vector loads and must hold numbers.
     host::BufferHandle zeroed_buffer(std::size_t floats) { return upload(std::vector<float>(floats, 0.0f)); }
 
+    void create_program(std::uint32_t max_patch_vertices, std::span<const std::byte> binary);
+    void share_program(const Implementation& built);
     void create_buffers(const host::Adjacency& adjacency);
     void create_kernels();
     void create_apply_kernels();

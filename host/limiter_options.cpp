@@ -50,9 +50,9 @@ bool matrix_free_consistent(const Options& options) {
     return options.matrix == Matrix::consistent && options.apply == Apply::matrix_free;
 }
 
-// With first guesses as well a GPU's kernel needs more registers than there are.
+// With first guesses or with α per triangle as well a GPU's kernel needs more registers than there are.
 bool one_group_fits(const Options& options, const DeviceFacts& facts) {
-    return options.kept_pressures == 0 || facts.is_cpu;
+    return facts.is_cpu || (options.kept_pressures == 0 && !options.regularization_per_triangle);
 }
 
 Execution resolve_execution(const Options& options, const DeviceFacts& facts, std::size_t largest) {
@@ -68,7 +68,9 @@ Execution resolve_execution(const Options& options, const DeviceFacts& facts, st
             if (!matrix_free_consistent(options))
                 invalid("execution is one_group, which needs the consistent matrix, matrix-free");
             if (!one_group_fits(options, facts))
-                throw Error(ErrorCode::unsupported, "execution is one_group, which takes kept_pressures on a CPU only");
+                throw Error(
+                    ErrorCode::unsupported,
+                    "execution is one_group, which takes kept_pressures and regularization_per_triangle on a CPU only");
             return options.execution;
     }
     invalid("unknown execution");

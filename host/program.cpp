@@ -7,6 +7,7 @@
 #include <apsl/error.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 namespace apsl::host {
@@ -77,6 +78,41 @@ ProgramHandle build_program(cl_context context, cl_device_id device, const std::
                     status, log);
     }
     return program;
+}
+
+ProgramHandle load_program(cl_context context, cl_device_id device, std::span<const std::byte> driver_binary,
+                           const std::string& build_options) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(driver_binary.data());
+    const std::size_t size = driver_binary.size();
+    cl_int status = CL_SUCCESS, binary_status = CL_SUCCESS;
+    ProgramHandle program(clCreateProgramWithBinary(context, 1, &device, &size, &bytes, &binary_status, &status));
+    if (status != CL_SUCCESS || binary_status != CL_SUCCESS ||
+        clBuildProgram(program.get(), 1, &device, build_options.c_str(), nullptr, nullptr) != CL_SUCCESS)
+        return {};
+    return program;
+}
+
+std::vector<std::byte> driver_binary(cl_program program, cl_device_id device) {
+    // The program belongs to all devices of the context, built for this one alone.
+    constexpr const char* doing = "asking the kernel program for its binary";
+    cl_uint count = 0;
+    check(clGetProgramInfo(program, CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr), doing);
+    std::vector<cl_device_id> devices(count);
+    check(clGetProgramInfo(program, CL_PROGRAM_DEVICES, count * sizeof(cl_device_id), devices.data(), nullptr), doing);
+    std::vector<std::size_t> sizes(count);
+    check(clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, count * sizeof(std::size_t), sizes.data(), nullptr),
+          doing);
+    // pocl 3.1 puts the one binary first, whichever device it is of.
+    std::size_t at = static_cast<std::size_t>(std::ranges::find(devices, device) - devices.begin());
+    if (at == count || sizes[at] == 0)
+        at = static_cast<std::size_t>(std::ranges::find_if(sizes, std::identity{}) - sizes.begin());
+    if (at == count) return {};
+    // A place for each: pocl 3.1 writes through the null that by the specification leaves one out.
+    std::vector<std::vector<std::byte>> binaries;
+    std::vector<void*> places;
+    for (const std::size_t size : sizes) places.push_back(binaries.emplace_back(size).data());
+    check(clGetProgramInfo(program, CL_PROGRAM_BINARIES, count * sizeof(void*), places.data(), nullptr), doing);
+    return binaries[at];
 }
 
 }  // namespace apsl::host

@@ -8,13 +8,14 @@ namespace apsl {
 
 StrainLimiter::StrainLimiter(cl_context context, cl_device_id device,
                              std::span<const std::shared_ptr<const Topology>> cloths, const Options& options,
-                             const BufferView& scratch)
-    : implementation_(std::make_unique<Implementation>(context, device, cloths, options, scratch)) {
+                             std::span<const std::byte> program_binary, const BufferView& scratch)
+    : implementation_(std::make_unique<Implementation>(context, device, cloths, options, program_binary, scratch)) {
 }
 
 StrainLimiter::StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
-                             const Options& options, const BufferView& scratch)
-    : StrainLimiter(context, device, std::span(&cloth, 1), options, scratch) {
+                             const Options& options, std::span<const std::byte> program_binary,
+                             const BufferView& scratch)
+    : StrainLimiter(context, device, std::span(&cloth, 1), options, program_binary, scratch) {
 }
 
 StrainLimiter::~StrainLimiter() = default;
@@ -29,8 +30,8 @@ std::size_t StrainLimiter::required_scratch_bytes(cl_device_id device,
 
 void StrainLimiter::rebuild(std::span<const std::shared_ptr<const Topology>> cloths, const BufferView& scratch) {
     const Implementation& built = *implementation_;
-    auto rebuilt =
-        std::make_unique<Implementation>(built.context, built.device, cloths, built.options, scratch, &built);
+    auto rebuilt = std::make_unique<Implementation>(built.context, built.device, cloths, built.options,
+                                                    std::span<const std::byte>{}, scratch, &built);
     rebuilt->profiling = built.profiling;
     rebuilt->profile = std::move(implementation_->profile);
     implementation_ = std::move(rebuilt);
@@ -50,6 +51,14 @@ std::size_t StrainLimiter::cloth_count() const noexcept {
 
 const Options& StrainLimiter::options() const noexcept {
     return implementation_->options;
+}
+
+std::vector<std::byte> StrainLimiter::program_binary() const {
+    return implementation_->program_binary();
+}
+
+ProgramBinaryUse StrainLimiter::program_binary_use() const noexcept {
+    return implementation_->binary_use;
 }
 
 cl_event StrainLimiter::enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,

@@ -41,15 +41,12 @@ APSL_KERNEL void filter_in_one_group(
                   scratch);
     order_values(cloths[c], parameters[c].enabled, triangle_order, ordered_rest_areas, ordered_regularization,
                  rest_areas + rest_area_offset, regularization + regularization_offset);
-    if (get_local_id(0) == 0) {
-        stats->initial_max_area_change = 0.0f;
-        stats->initial_rms_area_change = 0.0f;
-    }
     float2 change = (float2)(0.0f);
-    for (bool going_on = parameters[c].enabled; going_on;) {  // uniform: decided by sums over the group
+    // A cloth that is off goes round once, with no triangle.
+    for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
         const apsl_assembly_sums sums = assemble_triangles(
-            cloths[c], true, parameters[c].regularization,
+            cloths[c], parameters[c].enabled, parameters[c].regularization,
             scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_steps), factor, triangles,
             predicted, gradients, residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
         const float squared_change = group_sum(sum_of_lanes(sums.areas.squared_change), scratch);
@@ -95,7 +92,7 @@ APSL_KERNEL void filter_in_one_group(
             sub_steps += 1;
             iterations += solve.iterations;
             if (solve.initial_residual > 0.0f)
-                worst_residual = fmax(worst_residual, sqrt(solve.residual / solve.initial_residual));
+                worst_residual = fmax(worst_residual, relative_residual(solve.residual, solve.initial_residual));
         }
     }
     broken = broken || bad_vertices > 0.0f;

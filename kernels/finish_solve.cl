@@ -28,7 +28,8 @@ APSL_KERNEL void finish_solve(__global const apsl_cloth* cloths, __global const 
     solve.scaled_residual = sum_partials(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, groups, scratch);
     solve.previous_scaled_residual = states[c].scaled_residual[1];
     solve.previous_step = states[c].step[1];
-    if (unfinished) {  // uniform: the same for all work-items of the group
+    group_memory_barrier();  // all have read the state
+    if (unfinished) {        // uniform: the same for all work-items of the group
         iterate_in_group(&solve, false, parameters + c, cloths + c, patches, patch_vertices, local_triangles,
                          corner_offsets, corners, gradients, residual, damped_diagonal, product, direction,
                          direction_product, pressure, forces, scratch);

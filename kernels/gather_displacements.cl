@@ -32,7 +32,7 @@ APSL_KERNEL void gather_displacements(__global const apsl_cloth* cloths, __globa
             adapted_factor(states[c].adaptive_factor, parameters[c], states[c].solve_iterations, converged);
         // The product with a guess costs as much as an iteration.
         stats[c].cg_iterations += states[c].solve_iterations + (APSL_KEPT_PRESSURES > 0 ? 1 : 0);
-        if (initial > 0.0f) stats[c].residual = fmax(stats[c].residual, sqrt(residual / initial));
+        if (initial > 0.0f) stats[c].residual = fmax(stats[c].residual, relative_residual(residual, initial));
         if (!converged && stats[c].status == APSL_STATUS_OK) stats[c].status = APSL_STATUS_NOT_CONVERGED;
     }
 }

@@ -10,10 +10,11 @@
 APSL_INLINE bool is_worse(__global apsl_stats* stats, float max_area_change, float rms_area_change) {
     const float initial_max = stats->initial_max_area_change, initial_rms = stats->initial_rms_area_change;
     const bool rose = max_area_change > initial_max || rms_area_change > initial_rms;
-    const bool worse = rose && rms_area_change >= initial_rms;
+    const bool at_rest = initial_max <= APSL_AT_REST;
+    const bool worse = rose && (at_rest || rms_area_change >= initial_rms);
     stats->max_area_change = worse ? initial_max : max_area_change;
     stats->rms_area_change = worse ? initial_rms : rms_area_change;
-    if (rose && initial_max > APSL_AT_REST) stats->status = APSL_STATUS_WORSENED;
+    if (rose && !at_rest) stats->status = APSL_STATUS_WORSENED;
     return worse;
 }
 

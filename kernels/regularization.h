@@ -23,6 +23,11 @@ APSL_INLINE lanes effective_regularization(lanes given, float damping, float fac
     return alpha + (factor - 1.0f) * fmax(alpha - 1.0f, (lanes)(0.05f));
 }
 
+// ‖r‖ / ‖b‖ from their squares; the greatest number there is where a right-hand side near underflow makes it more.
+APSL_INLINE float relative_residual(float residual, float initial) {
+    return fmin(sqrt(residual / initial), FLT_MAX);
+}
+
 // The factor for the next solve.
 APSL_INLINE float adapted_factor(float factor, apsl_parameters parameters, int iterations, bool converged) {
     if (parameters.adaptive_iterations == 0) return 1.0f;

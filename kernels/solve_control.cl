@@ -69,6 +69,7 @@ APSL_KERNEL void end_call(__global const apsl_cloth* cloths, __global apsl_solve
     const bool diverged = bad_vertices || not_finite > 0.0f || stats[c].status == APSL_STATUS_DIVERGED;
     name_offender(stats + c, diverged, bad_vertices, cloths[c], vertex_order, triangle_order, triangles, predicted,
                   rest_areas, scratch);
+    group_memory_barrier();  // all have read the status
     if (get_local_id(0) != 0) return;
     if (stats[c].sub_steps == 0) {
         stats[c].initial_max_area_change = change.x;

@@ -71,7 +71,8 @@ APSL_INLINE float3 end_of_step(__global const float* positions, __global const f
 
 // Of (x̃ + Δt ṽ, inverse mass). A position or velocity that is not finite leaves nothing finite.
 APSL_INLINE bool is_bad_vertex(float4 predicted) {
-    return !all(isfinite(predicted)) || predicted.w < 0.0f;
+    return !isfinite(predicted.x) || !isfinite(predicted.y) || !isfinite(predicted.z) || !isfinite(predicted.w) ||
+           predicted.w < 0.0f;
 }
 
 // predicted = (x̃ + Δt ṽ, inverse mass), in the limiter's order of vertices. Returns how many of this work-item's are
@@ -121,7 +122,9 @@ APSL_INLINE void displace_vertices(apsl_cloth cloth, bool active, __global const
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint i = cloth.vertex_begin + v;
         const float4 x = predicted[i];
-        if (x.w > 0.0f) predicted[i] = x + displacement(x.w, corner_offsets, corners, gradients, pressure, i);
+        // One expression, which the compiler may fuse.
+        if (x.w > 0.0f)
+            predicted[i] = x - sqrt(2.0f * x.w) * sum_over_corners(corner_offsets, corners, gradients, pressure, i);
     }
 }
 

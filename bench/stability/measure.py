@@ -82,6 +82,8 @@ def condensed(name, chosen, results):
     """What the documentation keeps. Rows from the first value of y, one letter a point (outcome.py) along x."""
     first = results[0]
     names = list(dict.fromkeys(run["method"] for run in first["runs"]))
+    # As maps.py lists them, whichever were run last.
+    names.sort(key=lambda name: 0 if name == "none" else 1 if name.startswith("apsl") else 2)
     document = {"map": name, "commit": first["runs"][0]["commit"], "machine": first["machine"],
                 "meaning": outcome.MEANING}
     if name == CASES:

@@ -29,9 +29,10 @@ inline constexpr std::tuple parameter_fields{
     Field{"adaptive_iterations", &Parameters::adaptive_iterations},
     Field{"first_regularization", &Parameters::first_regularization},
     Field{"stepping", &Parameters::stepping},
+    Field{"enabled", &Parameters::enabled},
 };
 
-/// Without the strides: numpy arrays come as three floats a vertex.
+/// Without the layouts: numpy arrays come as three floats a vertex.
 inline constexpr std::tuple option_fields{
     Field{"matrix", &Options::matrix},
     Field{"apply", &Options::apply},
@@ -40,7 +41,7 @@ inline constexpr std::tuple option_fields{
     Field{"regularization_per_triangle", &Options::regularization_per_triangle},
     Field{"kept_pressures", &Options::kept_pressures},
 };
-inline constexpr std::size_t stride_fields = 2;
+inline constexpr std::size_t layout_fields = 6;
 
 inline constexpr std::tuple stats_fields{
     Field{"sub_steps", &Stats::sub_steps},
@@ -69,11 +70,9 @@ inline constexpr std::array names_of<Execution>{std::pair{Execution::automatic, 
                                                 std::pair{Execution::many_groups, "many_groups"},
                                                 std::pair{Execution::one_group, "one_group"}};
 template <>
-inline constexpr std::array names_of<Status>{std::pair{Status::ok, "ok"},
-                                             std::pair{Status::not_converged, "not_converged"},
-                                             std::pair{Status::worsened, "worsened"},
-                                             std::pair{Status::diverged, "diverged"},
-                                             std::pair{Status::off, "off"}};
+inline constexpr std::array names_of<Status>{
+    std::pair{Status::ok, "ok"}, std::pair{Status::not_converged, "not_converged"},
+    std::pair{Status::worsened, "worsened"}, std::pair{Status::diverged, "diverged"}, std::pair{Status::off, "off"}};
 template <>
 inline constexpr std::array names_of<Offender>{std::pair{Offender::none, "none"}, std::pair{Offender::vertex, "vertex"},
                                                std::pair{Offender::triangle, "triangle"}};
@@ -104,7 +103,7 @@ consteval std::size_t field_count() {
 
 static_assert(std::tuple_size_v<decltype(parameter_fields)> == field_count<Parameters>(),
               "a field of apsl::Parameters is missing in parameter_fields");
-static_assert(std::tuple_size_v<decltype(option_fields)> + stride_fields == field_count<Options>(),
+static_assert(std::tuple_size_v<decltype(option_fields)> + layout_fields == field_count<Options>(),
               "a field of apsl::Options is missing in option_fields");
 static_assert(std::tuple_size_v<decltype(stats_fields)> == field_count<Stats>(),
               "a field of apsl::Stats is missing in stats_fields");

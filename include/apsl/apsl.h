@@ -60,6 +60,16 @@ typedef enum apsl_limiter_offender {
     APSL_OFFENDER_TRIANGLE = 2 /**< rest area is negative or, like alpha or the area it came to, not finite */
 } apsl_limiter_offender;
 
+/** apsl::ProgramBinaryUse: what became of a program binary. Unless taken, the program was built from source. */
+typedef enum apsl_program_binary_use {
+    APSL_PROGRAM_BINARY_NONE_GIVEN = 0,       /**< no bytes */
+    APSL_PROGRAM_BINARY_TAKEN = 1,            /**< nothing was compiled here */
+    APSL_PROGRAM_BINARY_NOT_A_BINARY = 2,     /**< not one of apsl's, cut short, or of another format version */
+    APSL_PROGRAM_BINARY_OTHER_PROGRAM = 3,    /**< of other kernels, options, device or driver */
+    APSL_PROGRAM_BINARY_DAMAGED = 4,          /**< its bytes have changed */
+    APSL_PROGRAM_BINARY_REFUSED_BY_DRIVER = 5 /**< sound as far as apsl can tell */
+} apsl_program_binary_use;
+
 /** From where the sub-steps of a call correct. */
 typedef enum apsl_stepping {
     APSL_STEPPING_AUTOMATIC = 0,  /**< small steps from 20 sub-steps up */
@@ -155,16 +165,40 @@ APSL_API void apsl_topology_destroy(apsl_topology* topology);
 APSL_API apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
                                          size_t cloth_count, const apsl_limiter_options* options,
                                          apsl_limiter** limiter);
-/** For other topologies, without compiling where the compiled program fits. Where this fails the limiter stays as it
- * was. */
-APSL_API apsl_result apsl_limiter_rebuild(apsl_limiter* limiter, const apsl_topology* const* cloths,
-                                          size_t cloth_count);
-
+/** The same, from what apsl_limiter_program_binary gave: size bytes, tried in place of compiling. */
+APSL_API apsl_result apsl_limiter_create_from_binary(cl_context context, cl_device_id device,
+                                                     const apsl_topology* const* cloths, size_t cloth_count,
+                                                     const apsl_limiter_options* options, const void* binary,
+                                                     size_t size, apsl_limiter** limiter);
+/** The same in memory of the caller's: a place in a buffer, itself no sub-buffer, with what
+ * apsl_limiter_required_scratch_bytes says from its offset on. Nobody else may write there while the limiter lives.
+ * binary may be null with size 0. */
+APSL_API apsl_result apsl_limiter_create_in_scratch(cl_context context, cl_device_id device,
+                                                    const apsl_topology* const* cloths, size_t cloth_count,
+                                                    const apsl_limiter_options* options, const void* binary,
+                                                    size_t size, const apsl_buffer_view* scratch,
+                                                    apsl_limiter** limiter);
+/** *bytes is what a limiter for these cloths and options needs of scratch at any offset; 0 where this fails. */
+APSL_API apsl_result apsl_limiter_required_scratch_bytes(cl_device_id device, const apsl_topology* const* cloths,
+                                                         size_t cloth_count, const apsl_limiter_options* options,
+                                                         size_t* bytes);
+/** For other topologies, without compiling where the compiled program fits. scratch as in
+ * apsl_limiter_create_in_scratch, not overlapping the present one; null allocates. Where this fails the limiter stays
+ * as it was. */
+APSL_API apsl_result apsl_limiter_rebuild(apsl_limiter* limiter, const apsl_topology* const* cloths, size_t cloth_count,
+                                          const apsl_buffer_view* scratch);
 /** Null is allowed. */
 APSL_API void apsl_limiter_destroy(apsl_limiter* limiter);
 
 /** Device memory it holds; 0 for null. */
 APSL_API size_t apsl_limiter_scratch_bytes(const apsl_limiter* limiter);
+
+/** The compiled program; *size is its bytes, 0 where the driver gives none. Where binary is null only the size is asked
+ * for; else capacity bytes are there for it, at least *size. Best asked for after a call has completed. */
+APSL_API apsl_result apsl_limiter_program_binary(const apsl_limiter* limiter, void* binary, size_t capacity,
+                                                 size_t* size);
+/** An apsl_program_binary_use; none given for null. */
+APSL_API apsl_program_binary_use apsl_limiter_program_binary_use(const apsl_limiter* limiter);
 
 /** Queues one call; parameter_count is 1 or the number of cloths. The event completes with the call and is the caller's
  * to release; where event is null there is none. */

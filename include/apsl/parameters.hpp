@@ -55,7 +55,7 @@ struct Parameters {
     /// last, α − 1 changes by the same factor from one sub-step to the next (docs/formulation.md). Needs
     /// regularization > 1; a per-triangle α is that of the last sub-step and is scaled alike.
     float first_regularization = 0.0f;
-    Stepping stepping = Stepping::automatic;
+    Stepping stepping = Stepping::automatic;  ///< from where the sub-steps correct
     /// false: the cloth is left alone, nothing of it is read or written, its statistics are zeros with Status::off, and
     /// what is kept for its next call stays.
     bool enabled = true;

@@ -22,7 +22,8 @@ namespace apsl {
 struct Options {
     Matrix matrix = Matrix::consistent;  ///< what couples the pressures
     Apply apply = Apply::matrix_free;    ///< how it is applied
-    /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU kept_pressures 0.
+    /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU neither kept_pressures nor
+    /// regularization_per_triangle.
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;
@@ -68,6 +69,16 @@ struct Buffers {
     BufferView regularization = {};  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
 };
 
+/// What became of the program binary given to a StrainLimiter. Unless taken, the program was built from source.
+enum class ProgramBinaryUse : std::int32_t {
+    none_given = 0,         ///< no bytes
+    taken = 1,              ///< nothing was compiled here
+    not_a_binary = 2,       ///< not from StrainLimiter::program_binary, cut short, or of another format version
+    other_program = 3,      ///< of other kernels, options, device or driver
+    damaged = 4,            ///< its bytes have changed
+    refused_by_driver = 5,  ///< sound as far as this library can tell
+};
+
 /// One kernel's share of the profiled commands (see StrainLimiter::profile).
 struct KernelTime {
     std::string name;           ///< of the kernel, as in kernels/
@@ -82,17 +93,20 @@ struct KernelTime {
 /// once: one limiter per thread. Any number of limiters may share a context.
 class APSL_API StrainLimiter {
 public:
-    /// Compiles the kernels and uploads the adjacency of one or more cloths; the only place that waits.
+    /// Compiles the kernels and uploads the adjacency of one or more cloths; this and rebuild() alone wait.
+    /// Throws Error: invalid_argument (no cloths, options out of range, too little scratch), unsupported (the device
+    /// lacks what the options ask for), kernel_build, opencl.
+    /// `program_binary`: what program_binary() gave, tried in place of compiling; see program_binary_use().
     /// `scratch`: a place in a buffer of the caller's, itself no sub-buffer, with required_scratch_bytes() from its
     /// offset on, which is then all the device memory used; nobody else may write there while the limiter lives. Null:
     /// the limiter allocates its own.
-    /// Throws Error: invalid_argument (no cloths, options out of range), unsupported (the device lacks what the options
-    /// ask for), kernel_build, opencl.
     StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
-                  const Options& options = {}, const BufferView& scratch = {});
+                  const Options& options = {}, std::span<const std::byte> program_binary = {},
+                  const BufferView& scratch = {});
     /// The same for one cloth.
     StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
-                  const Options& options = {}, const BufferView& scratch = {});
+                  const Options& options = {}, std::span<const std::byte> program_binary = {},
+                  const BufferView& scratch = {});
     ~StrainLimiter();
     StrainLimiter(StrainLimiter&&) noexcept;             ///< what was moved from may only be assigned to or destroyed
     StrainLimiter& operator=(StrainLimiter&&) noexcept;  ///< likewise
@@ -118,6 +132,13 @@ public:
     std::size_t cloth_count() const noexcept;
     /// The options as resolved for the device (no zeros left).
     const Options& options() const noexcept;
+
+    /// The compiled program, for the constructor of a later limiter with the same kernels, options, largest patch,
+    /// device and driver. May take as long as compiling did. Best asked for after a call has completed: some drivers
+    /// compile at the first launch. Empty where the driver gives none.
+    std::vector<std::byte> program_binary() const;
+    /// What became of the binary given to the constructor; none_given after a rebuild() that compiled.
+    ProgramBinaryUse program_binary_use() const noexcept;
 
     /// Queues one filter call. `parameters` holds one entry for every cloth, or a single one for all.
     /// The queue may be in-order or out-of-order. The returned event completes with the call; the caller releases it.

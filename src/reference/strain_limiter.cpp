@@ -181,10 +181,10 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// a greater maximum and a greater RMS, the RMS decides: it is what the solves reduce.
     bool better(const AreaChange& initial, const AreaChange& change) {
         const bool rose = change.max > initial.max || change.rms > initial.rms;
-        const bool worse = rose && change.rms >= initial.rms;
+        const bool at_rest = initial.max <= 1e-5;  // 32-bit positions tell no better
+        const bool worse = rose && (at_rest || change.rms >= initial.rms);
         set_area_change(worse ? initial : change);
-        constexpr double at_rest = 1e-5;  // 32-bit positions tell no better
-        if (rose && initial.max > at_rest) stats.status = Status::worsened;
+        if (rose && !at_rest) stats.status = Status::worsened;
         return !worse;
     }
 

@@ -165,5 +165,49 @@ class Repeated(Case):
                 self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), f"{execution}, {name}")
 
 
+class Garments(Case):
+    """Real garments with stiff and with soft springs, the library's defaults."""
+
+    MESHES = project.parent / "shared" / "meshes"
+    PINS = {"skirt": 4.575, "tshirt": 1.079}  # y of the top 3 cm, m, in the file's own place
+    FIRST_FRAMES = 10  # for settling
+    LIMITS = {50: 0.02, 5: 0.05}  # greatest area change by N/m
+
+    @classmethod
+    def run_scenes(cls):
+        if not cls.MESHES.is_dir():
+            raise unittest.SkipTest(f"{cls.MESHES} is not there: garments passed over")
+        cls.reports = {(mesh, stiffness, limited): cls.run_garment(mesh, stiffness, limited)
+                       for mesh in cls.PINS for stiffness in cls.LIMITS for limited in (False, True)}
+
+    @classmethod
+    def run_garment(cls, mesh, stiffness, limited):
+        name = f"{mesh}_{stiffness}_{limited}"
+        scene = {"mesh": {"file": str(cls.MESHES / f"{mesh}.obj"), "height": 1.0}, "density": 0.2, "frames": 120,
+                 "pins": [{"box": {"min": [-9, cls.PINS[mesh], -9]}}],
+                 "integrator": {"implicit_springs": {"stretch_stiffness": stiffness, "bend_stiffness": 0.05,
+                                                     "damping": 0.5}}}
+        if limited:
+            scene["strain_limiting"] = {}
+        path = cls.folder(f"{name}.scene.json")
+        path.write_text(json.dumps(scene))
+        return cls.run_scene(name, path)
+
+    def test_areas_are_held(self):
+        for (mesh, stiffness, limited), report in self.reports.items():
+            if limited:
+                with self.subTest(mesh=mesh, stiffness=stiffness):
+                    greatest = max(frame["max_area_change"] for frame in report["frames"][self.FIRST_FRAMES:])
+                    self.assertLessEqual(greatest, self.LIMITS[stiffness])
+
+    def test_never_above_the_unlimited_run(self):
+        for (mesh, stiffness, limited), report in self.reports.items():
+            if limited:
+                with self.subTest(mesh=mesh, stiffness=stiffness):
+                    unlimited = self.reports[mesh, stiffness, False]["frames"]
+                    for number, frame in enumerate(report["frames"]):
+                        self.assertLessEqual(frame["max_area_change"], unlimited[number]["max_area_change"], number)
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]], defaultTest=sys.argv[3])

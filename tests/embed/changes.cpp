@@ -215,7 +215,7 @@ TEST_CASE("a limiter in the caller's scratch memory allocates nothing, and gives
                                         clReleaseMemObject);
             require_success(status, "clCreateBuffer");
             const int allocations = opencl_calls().allocations;
-            StrainLimiter limiter(device().context, device().id, topologies, options, {scratch.get(), offset});
+            StrainLimiter limiter(device().context, device().id, topologies, options, {}, {scratch.get(), offset});
             CHECK(opencl_calls().allocations == allocations);
             CHECK(limiter.scratch_bytes() == own.scratch_bytes());
             check_same(outcome(limiter, cloths, {&few, 1}), outcome(own, cloths, {&few, 1}));
@@ -229,7 +229,7 @@ TEST_CASE("a limiter in the caller's scratch memory allocates nothing, and gives
                 if ((n < offset || n >= offset + needed) && after[n] != 0xFF) FAIL("byte " << n << " was written");
 
             CHECK_THROWS_WITH(
-                StrainLimiter(device().context, device().id, topologies, options, {scratch.get(), needed / 2}),
+                StrainLimiter(device().context, device().id, topologies, options, {}, {scratch.get(), needed / 2}),
                 Catch::StartsWith("scratch holds"));
         }
 }

@@ -3,10 +3,12 @@
 
 #include <CL/cl.h>
 #include <dlfcn.h>
+#include <algorithm>
 
 namespace {
 
 apsl::test::OpenClCalls calls;
+apsl::test::Pretence pretended;
 apsl::test::CallHooks hooks;
 int calls_to_failure = 0;
 
@@ -14,6 +16,11 @@ int calls_to_failure = 0;
 template <class Function>
 Function* real(const char* name) {
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+/// The text's last letter changed.
+void alter(void* text, size_t size) {
+    if (text && size > 1) static_cast<char*>(text)[size - 2] ^= 1;
 }
 
 void count_blocking(cl_bool blocking) {
@@ -55,6 +62,10 @@ cl_int counted(int& held, int change, cl_int status) {
 
 apsl::test::OpenClCalls apsl::test::opencl_calls() {
     return calls;
+}
+
+void apsl::test::pretend(const Pretence& pretence) {
+    pretended = pretence;
 }
 
 void apsl::test::set_call_hooks(const CallHooks& wanted) {
@@ -159,6 +170,41 @@ SHOWN cl_int clReleaseMemObject(cl_mem object) {
     static auto* const next = real<decltype(clReleaseMemObject)>("clReleaseMemObject");
     ++calls.releases;
     return counted(calls.held.buffers, -1, next(object));
+}
+
+SHOWN cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, const cl_device_id* devices,
+                                           const size_t* lengths, const unsigned char** binaries, cl_int* statuses,
+                                           cl_int* status) {
+    static auto* const next = real<decltype(clCreateProgramWithBinary)>("clCreateProgramWithBinary");
+    ++calls.binaries;
+    if (!pretended.binaries_are_invalid)
+        return created(calls.held.programs, status, [&](cl_int* outcome) {
+            return next(context, count, devices, lengths, binaries, statuses, outcome);
+        });
+    *status = CL_INVALID_BINARY;
+    return nullptr;
+}
+
+SHOWN cl_int clGetProgramInfo(cl_program program, cl_program_info what, size_t size, void* value, size_t* value_size) {
+    static auto* const next = real<decltype(clGetProgramInfo)>("clGetProgramInfo");
+    const cl_int status = next(program, what, size, value, value_size);
+    if (pretended.no_binaries && what == CL_PROGRAM_BINARY_SIZES) std::fill_n(static_cast<char*>(value), size, char{0});
+    return status;
+}
+
+SHOWN cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* value_size) {
+    static auto* const next = real<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
+    const cl_int status = next(device, what, size, value, value_size);
+    if (what == pretended.other_device_text) alter(value, size);
+    return status;
+}
+
+SHOWN cl_int clGetPlatformInfo(cl_platform_id platform, cl_platform_info what, size_t size, void* value,
+                               size_t* value_size) {
+    static auto* const next = real<decltype(clGetPlatformInfo)>("clGetPlatformInfo");
+    const cl_int status = next(platform, what, size, value, value_size);
+    if (what == pretended.other_platform_text) alter(value, size);
+    return status;
 }
 
 SHOWN cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset, size_t size,

@@ -177,7 +177,7 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("strain_limiting": {"alpha": 2})",
          "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, regularization, "
          "sub_steps, target_area_change, tolerance, max_iterations, adaptive_iterations, first_regularization, "
-         "kept_pressures"},
+         "stepping, kept_pressures"},
         {R"("strain_limiting": {"regularization": 0.99})",
          "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
         {R"("strain_limiting": {"regularization": [1, 0.5]})",

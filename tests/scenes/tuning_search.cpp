@@ -84,7 +84,8 @@ TEST_CASE("settings change nothing else in a scene") {
           R"({"time_step":0.005,"strain_limiting":{"matrix":"consistent","regularization":[1.1,1.2],"sub_steps":3,)"
           R"("tolerance":0.1,"max_iterations":50},"frames":3,"steps_per_frame":2})");
     CHECK(limiter_settings(changed).sub_steps == 3);
-    const LimiterSettings rising{.sub_steps = 4, .first_regularization = 1.01, .kept_pressures = 4};
+    const LimiterSettings rising{
+        .sub_steps = 4, .regularization = 1.05, .first_regularization = 1.01, .kept_pressures = 4};
     const auto risen = with_settings(document, rising);
     CHECK(risen["strain_limiting"]["first_regularization"] == 1.01);
     CHECK(risen["strain_limiting"]["kept_pressures"] == 4);

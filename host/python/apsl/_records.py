@@ -32,6 +32,7 @@ class Parameters(TypedDict, total=False):
     adaptive_iterations: int  # 0: α stays as given; else more iterations than this raise it
     first_regularization: float  # 0: one α for all sub-steps; else > 1, that of the first
     stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small steps from 20 sub-steps up
+    enabled: bool  # False: the velocities come back as they were, with status "off"
 
 
 @dataclass(frozen=True)

@@ -22,23 +22,12 @@ double largest(const std::vector<double>& numbers) {
 }
 
 bool must_diverge_on(const MovingCloth& cloth) {
-    for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a) {
-        if (!std::isfinite(cloth.rest_areas[a])) {
-            if (cloth.rest_areas[a] < 0.0) continue;  // −∞: not above zero
-            return true;
-        }
-        if (!(cloth.rest_areas[a] > 0.0)) continue;
-        for (const std::uint32_t v : cloth.topology->triangles()[a]) {
-            if (!(cloth.inverse_masses[v] >= 0.0 && std::isfinite(cloth.inverse_masses[v]))) {
-                if (cloth.inverse_masses[v] == -infinity) continue;
-                return true;
-            }
-            for (std::size_t k = 0; k < 3; ++k)
-                if (!std::isfinite(cloth.positions[3 * v + k]) || !std::isfinite(cloth.velocities[3 * v + k]))
-                    return true;
-        }
-    }
-    return false;
+    const auto any = [](const std::vector<double>& numbers, double least) {
+        return std::any_of(numbers.begin(), numbers.end(),
+                           [&](double number) { return !std::isfinite(number) || number < least; });
+    };
+    return any(cloth.positions, -infinity) || any(cloth.velocities, -infinity) || any(cloth.inverse_masses, 0.0) ||
+           any(cloth.rest_areas, 0.0);
 }
 
 std::vector<double> end_of_step(const MovingCloth& cloth, const std::vector<double>& velocities, double time_step) {

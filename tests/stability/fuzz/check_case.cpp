@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "stability/fuzz/check_case.hpp"
 
-#include "stability/fuzz/known_bugs.hpp"
-
 #include <exception>
 #include <sstream>
 #include <utility>
@@ -53,7 +51,6 @@ std::string difference_of(const std::vector<Filtered>& a, const std::vector<Filt
 /// All calls of the case; `results` gets what each left.
 std::optional<Violation> check_calls(const FuzzCase& c, FuzzedFilter& filter,
                                      std::vector<std::vector<Filtered>>& results) {
-    std::optional<Violation> known;  // it hides no other
     std::vector<MovingCloth> cloths;
     std::vector<Filtered> filtered;
     for (std::size_t k = 0; k < c.calls.size(); ++k) {
@@ -62,12 +59,10 @@ std::optional<Violation> check_calls(const FuzzCase& c, FuzzedFilter& filter,
         filtered = filter.call(cloths, call.parameters);
         results.push_back(filtered);
         for (std::size_t n = 0; n < cloths.size(); ++n)
-            if (auto violation = violation_of(cloths[n], c.options, call.parameters[n], filtered[n], filter)) {
-                if (!is_known(*violation)) return named(*violation, filter, k, n);
-                if (!known) known = named(*violation, filter, k, n);
-            }
+            if (auto violation = violation_of(cloths[n], c.options, call.parameters[n], filtered[n], filter))
+                return named(*violation, filter, k, n);
     }
-    return known;
+    return std::nullopt;
 }
 
 std::optional<Violation> check_on(const FuzzCase& c, FuzzedFilter& filter,
@@ -91,24 +86,17 @@ std::optional<Violation> CaseChecker::check_all(const FuzzCase& c) {
     // The device last: building a limiter is what takes long when a case is shrunk.
     std::vector<std::vector<Filtered>> on_device, again, in_double, in_single;
     ReferenceFilter<double> reference(c);
-    std::optional<Violation> known;
-    const auto broken = [&](FuzzedFilter& filter, std::vector<std::vector<Filtered>>& results) {
-        auto violation = check_on(c, filter, results);
-        if (!violation || !is_known(*violation)) return violation;
-        known = std::move(violation);
-        return std::optional<Violation>{};
-    };
-    if (auto violation = broken(reference, in_double)) return violation;
+    if (auto violation = check_on(c, reference, in_double)) return violation;
     if (c.in_single_precision) {
         ReferenceFilter<float> single(c);
-        if (auto violation = broken(single, in_single)) return violation;
+        if (auto violation = check_on(c, single, in_single)) return violation;
     }
     if (!device_ || !device_->fits(c)) {
         device_.reset();
         device_ = std::make_unique<DeviceFilter>(c);
     }
     device_->set_offset(c.offset);
-    if (auto violation = broken(*device_, on_device)) return violation;
+    if (auto violation = check_on(c, *device_, on_device)) return violation;
 
     for (std::size_t n = 0; n < c.cloths.size() && !c.calls[0].bad; ++n)
         if (auto violation =
@@ -117,14 +105,14 @@ std::optional<Violation> CaseChecker::check_all(const FuzzCase& c) {
 
     // The same calls once more: after a call that was given NaNs, too, a limiter that remembers nothing does what it
     // did before. One that does remember starts anew.
-    if (!c.twice) return known;
+    if (!c.twice) return std::nullopt;
     if (remembers(c)) device_ = std::make_unique<DeviceFilter>(c);
     device_->set_offset(c.offset);
-    if (auto violation = broken(*device_, again)) return violation;
+    if (auto violation = check_on(c, *device_, again)) return violation;
     for (std::size_t k = 0; k < on_device.size(); ++k)
         if (const std::string words = difference_of(on_device[k], again[k]); !words.empty())
             return Violation{"the same call twice gave different bytes", "OpenCL, call " + std::to_string(k) + words};
-    return known;
+    return std::nullopt;
 }
 
 }  // namespace apsl::test

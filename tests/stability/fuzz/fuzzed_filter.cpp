@@ -100,7 +100,7 @@ bool refused_by_reference(const MovingCloth& cloth) {
         return std::any_of(numbers.begin(), numbers.end(), bad);
     };
     return any(cloth.inverse_masses, [](double w) { return !std::isfinite(w) || w < 0.0; }) ||
-           any(cloth.rest_areas, [](double area) { return !std::isfinite(area) || area <= 0.0; });
+           any(cloth.rest_areas, [](double area) { return !std::isfinite(area) || area < 0.0; });
 }
 
 template class ReferenceFilter<double>;

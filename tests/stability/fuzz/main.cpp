@@ -3,7 +3,6 @@
 // Random cases, legal and illegal, and what must hold after each (properties.hpp, illegal_calls.hpp).
 #include "stability/fuzz/check_case.hpp"
 #include "stability/fuzz/illegal_calls.hpp"
-#include "stability/fuzz/known_bugs.hpp"
 #include "stability/fuzz/make_case.hpp"
 #include "stability/fuzz/print_case.hpp"
 #include "stability/fuzz/shrink_case.hpp"
@@ -26,13 +25,12 @@ constexpr int shrinking_trials = 400;
 
 struct Arguments {
     std::uint64_t seed = 1, cases = 10000, first = 0;
-    bool keeps_going = false, shrinks = true, reports_known = false;
+    bool keeps_going = false, shrinks = true;
 };
 
 int usage() {
-    std::cerr << "usage: apsl_fuzz [--seed N] [--cases N] [--first N] [--keep-going] [--no-shrinking] [--known]\n"
-                 "Runs cases first ... first + cases - 1 of the seed; with --known, bugs of known_bugs.hpp fail too. "
-                 "Exit: 0 all hold, 1 one does not, 2 wrong usage, "
+    std::cerr << "usage: apsl_fuzz [--seed N] [--cases N] [--first N] [--keep-going] [--no-shrinking]\n"
+                 "Runs cases first ... first + cases - 1 of the seed. Exit: 0 all hold, 1 one does not, 2 wrong usage, "
                  "3 one does not end.\n";
     return 2;
 }
@@ -40,10 +38,6 @@ int usage() {
 bool parse(int count, char** words, Arguments& arguments) {
     for (int n = 1; n < count; ++n) {
         const std::string word = words[n];
-        if (word == "--known") {
-            arguments.reports_known = true;
-            continue;
-        }
         if (word == "--keep-going" || word == "--no-shrinking") {
             (word == "--keep-going" ? arguments.keeps_going : arguments.shrinks) = word == "--keep-going";
             continue;
@@ -84,7 +78,7 @@ int run(const Arguments& arguments, const std::string& program) {
     Watchdog watchdog;
     CaseMaker maker(arguments.seed);
     CaseChecker checker;
-    std::uint64_t broken = 0, known = 0;
+    std::uint64_t broken = 0;
     for (std::uint64_t number = arguments.first; number < arguments.first + arguments.cases; ++number) {
         const std::string repeat =
             program + " --seed " + std::to_string(arguments.seed) + " --first " + std::to_string(number) + " --cases 1";
@@ -97,10 +91,6 @@ int run(const Arguments& arguments, const std::string& program) {
         } else {
             const FuzzCase c = maker.make(number);
             violation = checker.check(c);
-            if (violation && is_known(*violation) && !arguments.reports_known) {
-                ++known;
-                continue;
-            }
             if (violation) report(*violation, repeat);
             if (violation && arguments.shrinks) {
                 watchdog.begin(repeat + " (while shrinking)", shrinking_patience);
@@ -112,8 +102,7 @@ int run(const Arguments& arguments, const std::string& program) {
         if (!arguments.keeps_going) break;
     }
     if (broken > 0) return 1;
-    std::cout << arguments.cases << " cases of seed " << arguments.seed << ": all properties hold"
-              << (known > 0 ? " but for " + std::to_string(known) + " with bugs of known_bugs.hpp" : "") << std::endl;
+    std::cout << arguments.cases << " cases of seed " << arguments.seed << ": all properties hold" << std::endl;
     return 0;
 }
 
