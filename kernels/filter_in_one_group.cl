@@ -57,7 +57,7 @@ APSL_KERNEL void filter_in_one_group(
         change.x = group_max(max_of_lanes(sums.areas.max_change), scratch);
         change.y = measured > 0.0f ? sqrt(squared_change / measured) : 0.0f;
         broken = not_finite > 0.0f || !isfinite(solve.initial_residual);
-        const bool on_the_way = started && sub_steps < parameters[c].walked;
+        const bool on_the_way = started && sub_steps < walked_sub_steps(parameters[c]);
         going_on = !broken && sub_steps < parameters[c].sub_steps &&
                    (on_the_way || change.x > parameters[c].target_area_change);
         if (!started && get_local_id(0) == 0) {
@@ -65,11 +65,11 @@ APSL_KERNEL void filter_in_one_group(
             stats->initial_rms_area_change = change.y;
         }
         // On a walk the first round only looks at its end; the second assembles where it begins.
-        const bool starting = !started && going_on && parameters[c].walked > 0;
+        const bool starting = !started && going_on && walked_sub_steps(parameters[c]) > 0;
         started = true;
         group_memory_barrier();
-        start_walking(cloths[c], starting, parameters[c].time_step, parameters[c].walked, vertex_order, predicted,
-                      motion, correction, positions + position_offset, velocities + velocity_offset);
+        start_walking(cloths[c], starting, parameters[c].time_step, walked_sub_steps(parameters[c]), vertex_order,
+                      predicted, motion, correction, positions + position_offset, velocities + velocity_offset);
         if (going_on && !starting) {
             if (APSL_KEPT_PRESSURES > 0) {
                 copy_pressures(cloths[c], pressure, pressure + kept_place(sub_steps, pressure_stride));
@@ -82,10 +82,10 @@ APSL_KERNEL void filter_in_one_group(
             if (APSL_KEPT_PRESSURES > 0)
                 copy_pressures(cloths[c], pressure + kept_place(sub_steps, pressure_stride), pressure);
             const bool solved = APSL_KEPT_PRESSURES > 0 || solve.iterations > 0;
-            const bool walking = parameters[c].walked > 0;
+            const bool walking = walked_sub_steps(parameters[c]) > 0;
             displace_vertices(cloths[c], solved && !walking, corner_offsets, corners, gradients, pressure, predicted);
-            walk_vertices(cloths[c], walking, solved, sub_steps, parameters[c].walked, corner_offsets, corners,
-                          gradients, pressure, predicted, motion, correction);
+            walk_vertices(cloths[c], walking, solved, sub_steps, walked_sub_steps(parameters[c]), corner_offsets,
+                          corners, gradients, pressure, predicted, motion, correction);
             const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
             factor = adapted_factor(factor, parameters[c], solve.iterations, met);
             converged = converged && met;
@@ -110,6 +110,6 @@ APSL_KERNEL void filter_in_one_group(
     group_memory_barrier();
     name_offender(stats, broken, bad_vertices > 0.0f, cloths[c], vertex_order, triangle_order, triangles, predicted,
                   ordered_rest_areas, scratch);
-    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, parameters[c].walked > 0, vertex_order,
-                      predicted, correction, positions + position_offset, velocities + velocity_offset);
+    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, walked_sub_steps(parameters[c]) > 0,
+                      vertex_order, predicted, correction, positions + position_offset, velocities + velocity_offset);
 }

@@ -20,11 +20,11 @@ APSL_KERNEL void gather_displacements(__global const apsl_cloth* cloths, __globa
     // A right-hand side of zero does no iteration, and then, unless a guess was scaled by 0, no pressure is there to
     // read.
     const bool solved = APSL_KEPT_PRESSURES > 0 || states[c].solve_iterations > 0;
-    const bool walking = parameters[c].walked > 0;
+    const bool walking = walked_sub_steps(parameters[c]) > 0;
     displace_vertices(cloths[c], !walking && !states[c].stopped && solved, corner_offsets, corners, gradients, pressure,
                       predicted);
-    walk_vertices(cloths[c], walking && !states[c].stopped, solved, sub_step, parameters[c].walked, corner_offsets,
-                  corners, gradients, pressure, predicted, motion, correction);
+    walk_vertices(cloths[c], walking && !states[c].stopped, solved, sub_step, walked_sub_steps(parameters[c]),
+                  corner_offsets, corners, gradients, pressure, predicted, motion, correction);
     const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     if (get_group_id(0) == 0 && get_local_id(0) == 0 && !states[c].stopped) {
         const bool converged = residual <= parameters[c].tolerance_squared * initial;

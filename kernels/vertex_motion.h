@@ -57,13 +57,14 @@ APSL_INLINE float3 load_velocity(__global const float* velocities, uint vertex) 
     return load_vector(velocities + (ulong)vertex * APSL_VELOCITY_STRIDE, APSL_VELOCITY_COMPONENT_STRIDE);
 }
 
-// x̃ + Δt ṽ of the caller's vertex, or where there are no velocities the position as given, to the bit.
+// x̃ + Δt ṽ of the caller's vertex. Where there are no velocities, `velocities` is the positions, in and out, and this
+// the position as given, to the bit: one pointer in place of two, which the large kernel has no registers for.
 APSL_INLINE float3 end_of_step(__global const float* positions, __global const float* velocities, uint vertex,
                                float time_step) {
 #if APSL_POSITIONS_ONLY
-    (void)velocities;
+    (void)positions;
     (void)time_step;
-    return load_position(positions, vertex);
+    return load_position(velocities, vertex);
 #else
     return predicted_position(load_position(positions, vertex), load_velocity(velocities, vertex), time_step);
 #endif
@@ -90,6 +91,11 @@ APSL_INLINE float predict_vertices(apsl_cloth cloth, bool active, float time_ste
         bad += is_bad_vertex(x) ? 1.0f : 0.0f;
     }
     return bad;
+}
+
+// Sub-steps that move on by a part of Δt: none where there are no velocities, which the compiler then knows.
+APSL_INLINE int walked_sub_steps(apsl_parameters parameters) {
+    return APSL_POSITIONS_ONLY ? 0 : parameters.walked;
 }
 
 // The first of `walked` parts of the step: predicted = x̃ + Δt ṽ / walked, motion = Δt ṽ, correction = 0.

@@ -144,6 +144,93 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     apsl_topology_destroy(nullptr);
 }
 
+namespace {
+
+/// One call of the C interface on an in-order queue, waited for.
+apsl_limiter_stats filter_in_c(apsl_limiter* limiter, const apsl_limiter_buffers& views,
+                               const apsl_limiter_parameters& parameters) {
+    const Owned<cl_command_queue> queue = in_order_queue();
+    apsl_limiter_stats stats{};
+    cl_event read = nullptr;
+    REQUIRE(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 0, nullptr, nullptr) == APSL_SUCCESS);
+    REQUIRE(apsl_limiter_read_stats(limiter, queue.get(), &stats, 1, 0, nullptr, &read) == APSL_SUCCESS);
+    require_success(wait_and_release(read), "reading the statistics");
+    return stats;
+}
+
+}  // namespace
+
+TEST_CASE("the C interface: rest areas from positions, a cloth off, scratch memory, a rebuild", "[embed]") {
+    const MovingCloth cloth = moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1);
+    const MovingCloth other = moving_cloth(grid(7, 9, 1.0, 1.0, Diagonals::alternating), 2);
+    const CTopology topology(cloth), other_topology(other);
+    const apsl_topology* const cloths[] = {topology.topology};
+    const apsl_topology* const others[] = {other_topology.topology};
+    const Parameters defaults;
+
+    std::size_t needed = 1;
+    CHECK(apsl_limiter_required_scratch_bytes(device().id, cloths, 1, nullptr, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(apsl_limiter_required_scratch_bytes(device().id, cloths, 0, nullptr, &needed) == APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(needed == 0);
+    REQUIRE(apsl_limiter_required_scratch_bytes(device().id, cloths, 1, nullptr, &needed) == APSL_SUCCESS);
+    CHECK(needed == StrainLimiter::required_scratch_bytes(device().id, {&cloth.topology, 1}));
+    cl_int status = CL_SUCCESS;
+    const Owned<cl_mem> memory(clCreateBuffer(device().context, CL_MEM_READ_WRITE, needed, nullptr, &status),
+                               clReleaseMemObject);
+    require_success(status, "clCreateBuffer");
+    const apsl_buffer_view scratch{memory.get(), 0}, too_small{memory.get(), needed / 2}, nowhere{nullptr, 0};
+    apsl_limiter* limiter = nullptr;
+    for (const apsl_buffer_view* bad : {&too_small, &nowhere, static_cast<const apsl_buffer_view*>(nullptr)}) {
+        CHECK(apsl_limiter_create_in_scratch(device().context, device().id, cloths, 1, nullptr, nullptr, 0, bad,
+                                             &limiter) == APSL_ERROR_INVALID_ARGUMENT);
+        CHECK(limiter == nullptr);
+        CHECK(std::string(apsl_last_error()).starts_with("scratch"));
+    }
+    REQUIRE(apsl_limiter_create_in_scratch(device().context, device().id, cloths, 1, nullptr, nullptr, 0, &scratch,
+                                           &limiter) == APSL_SUCCESS);
+
+    // Off: nothing moves.
+    const CallerBuffers buffers({&cloth, 1}, {}), expected({&cloth, 1}, {});
+    apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+    CHECK(parameters.enabled == 1);
+    parameters.enabled = 0;
+    CHECK(filter_in_c(limiter, c_views(buffers), parameters).status == APSL_LIMITER_OFF);
+    CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
+    parameters.enabled = 1;
+    StrainLimiter same(device().context, device().id, cloth.topology);
+    const std::vector<Stats> expected_stats = filter(same, expected, {&defaults, 1});
+    const apsl_limiter_stats stats = filter_in_c(limiter, c_views(buffers), parameters);
+    CHECK(std::memcmp(&stats, expected_stats.data(), sizeof stats) == 0);
+    CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
+
+    // At rest where it lies: x̃ as rest positions, and no velocities.
+    const Owned<cl_command_queue> queue = in_order_queue();
+    apsl_limiter_buffers views = c_views(buffers);
+    MovingCloth still = cloth;
+    still.velocities.assign(still.velocities.size(), 0.0);
+    const CallerBuffers at_rest({&still, 1}, {});
+    views.velocities = c_views(at_rest).velocities;
+    cl_event measured = nullptr;
+    CHECK(apsl_limiter_enqueue_rest_areas(limiter, queue.get(), nullptr, &views.rest_areas, 0, nullptr, &measured) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    REQUIRE(apsl_limiter_enqueue_rest_areas(limiter, queue.get(), &views.positions, &views.rest_areas, 0, nullptr,
+                                            &measured) == APSL_SUCCESS);
+    require_success(wait_and_release(measured), "the rest areas");
+    parameters.sub_steps = 0;
+    CHECK(filter_in_c(limiter, views, parameters).initial_max_area_change < 1e-6f);
+
+    CHECK(apsl_limiter_rebuild(limiter, nullptr, 1, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(apsl_limiter_rebuild(nullptr, others, 1, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
+    REQUIRE(apsl_limiter_rebuild(limiter, others, 1, nullptr) == APSL_SUCCESS);
+    const CallerBuffers other_buffers({&other, 1}, {}), other_expected({&other, 1}, {});
+    StrainLimiter fresh(device().context, device().id, other.topology);
+    filter(fresh, other_expected, {&defaults, 1});
+    CHECK(filter_in_c(limiter, c_views(other_buffers), apsl_limiter_default_parameters()).status == APSL_LIMITER_OK);
+    CHECK(same_bytes(other_buffers.read_velocities(), other_expected.read_velocities()));
+    CHECK(apsl_limiter_scratch_bytes(limiter) == fresh.scratch_bytes());
+    apsl_limiter_destroy(limiter);
+}
+
 TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     const apsl_limiter_options o = apsl_limiter_default_options();
     const Options options;
@@ -169,4 +256,6 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(p.max_iterations == parameters.max_iterations);
     CHECK(p.adaptive_iterations == parameters.adaptive_iterations);
     CHECK(p.first_regularization == parameters.first_regularization);
+    CHECK(p.stepping == static_cast<int>(parameters.stepping));
+    CHECK(p.enabled == 1);
 }

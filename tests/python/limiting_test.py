@@ -39,6 +39,11 @@ class OneTriangle(unittest.TestCase):
         np.testing.assert_array_equal(velocities[1], [32, 0, 0])
         self.assertEqual(stats.sub_steps, 0)
 
+    def test_switched_off_nothing_is_looked_at(self):
+        velocities, stats = self.limit(np.nan, enabled=False)
+        np.testing.assert_array_equal(velocities[1], np.array([np.nan, 0, 0], np.float32))
+        self.assertEqual((stats.sub_steps, stats.initial_max_area_change, stats.status), (0, 0, "off"))
+
 
 class Cloth(unittest.TestCase):
     def test_area_change_shrinks_to_what_stats_say(self):

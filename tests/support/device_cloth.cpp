@@ -11,16 +11,29 @@
 namespace apsl::test {
 namespace {
 
+/// Floats from one element to the next, and from one of its components to the next.
+struct Layout {
+    std::size_t width, stride, component_stride = 1;
+
+    std::size_t place(std::size_t element, std::size_t component) const {
+        return element * stride + component * component_stride;
+    }
+};
+
+Layout layout_of_velocities(const Options& options) {
+    return {3, options.velocity_stride, options.velocity_component_stride};
+}
+
+/// A caller's buffer, which may end with its last number; poison in between.
 std::vector<float> placed(std::span<const MovingCloth> cloths, std::vector<double> MovingCloth::* numbers,
-                          std::size_t width, std::size_t stride, std::size_t offset) {
-    std::vector<float> all = poison<float>(offset);
+                          const Layout& layout, std::size_t offset) {
+    std::vector<double> joined;
     for (const MovingCloth& cloth : cloths)
-        for (std::size_t n = 0; n < (cloth.*numbers).size(); n += width) {
-            for (std::size_t k = 0; k < width; ++k) all.push_back(static_cast<float>((cloth.*numbers)[n + k]));
-            const std::vector<float> gap = poison<float>(stride - width);
-            all.insert(all.end(), gap.begin(), gap.end());
-        }
-    all.resize(all.size() - (stride - width));  // a caller's buffer may end with its last number
+        joined.insert(joined.end(), (cloth.*numbers).begin(), (cloth.*numbers).end());
+    const std::size_t count = joined.size() / layout.width;
+    std::vector<float> all = poison<float>(offset + layout.place(count - 1, layout.width - 1) + 1);
+    for (std::size_t n = 0; n < joined.size(); ++n)
+        all[offset + layout.place(n / layout.width, n % layout.width)] = static_cast<float>(joined[n]);
     return all;
 }
 
@@ -68,11 +81,12 @@ CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options&
     : options(the_options),
       offset(the_offset),
       vertex_count(vertices_of(cloths)),
-      positions(placed(cloths, &MovingCloth::positions, 3, options.position_stride, offset)),
-      velocities(placed(cloths, &MovingCloth::velocities, 3, options.velocity_stride, offset)),
-      inverse_masses(placed(cloths, &MovingCloth::inverse_masses, 1, 1, offset)),
-      rest_areas(placed(cloths, &MovingCloth::rest_areas, 1, 1, offset)),
-      regularization(placed(cloths, &MovingCloth::regularization, 1, 1, offset)) {
+      positions(placed(cloths, &MovingCloth::positions, {3, options.position_stride, options.position_component_stride},
+                       offset)),
+      velocities(placed(cloths, &MovingCloth::velocities, layout_of_velocities(options), offset)),
+      inverse_masses(placed(cloths, &MovingCloth::inverse_masses, {1, options.inverse_mass_stride}, offset)),
+      rest_areas(placed(cloths, &MovingCloth::rest_areas, {1, 1}, offset)),
+      regularization(placed(cloths, &MovingCloth::regularization, {1, 1}, offset)) {
 }
 
 Buffers CallerBuffers::views() const {
@@ -89,15 +103,15 @@ Buffers CallerBuffers::views() const {
 std::vector<float> CallerBuffers::read_velocities() const {
     for (const auto* array : {&positions, &inverse_masses, &rest_areas, &regularization}) array->read();
     const std::vector<float> all = velocities.read();
-    const std::vector<float> untouched = poison<float>(1);
-    std::vector<float> numbers;
-    for (std::size_t n = 0; n < all.size(); ++n) {
-        if (n >= offset && (n - offset) % options.velocity_stride < 3)
-            numbers.push_back(all[n]);
-        else if (!same_bytes({all[n]}, untouched))
-            throw std::runtime_error("float " + std::to_string(n) +
-                                     " of the velocities, between two vertices, was written");
+    const Layout layout = layout_of_velocities(options);
+    std::vector<float> numbers, gaps = all;
+    for (std::size_t n = 0; n < 3 * vertex_count; ++n) {
+        const std::size_t place = offset + layout.place(n / 3, n % 3);
+        numbers.push_back(all[place]);
+        gaps[place] = poison<float>(1)[0];
     }
+    if (!same_bytes(gaps, poison<float>(gaps.size())))
+        throw std::runtime_error("a float between the velocities of two vertices was written");
     return numbers;
 }
 

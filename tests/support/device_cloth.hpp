@@ -29,7 +29,7 @@ MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed);
 
 /// The caller's buffers of one or more cloths, guarded, and the filter run on them.
 struct CallerBuffers {
-    /// `offset`: floats before the first element of every buffer. Strides and per-triangle α from the options.
+    /// `offset`: floats before the first element of every buffer. Layouts and per-triangle α from the options.
     CallerBuffers(std::span<const MovingCloth> cloths, const Options& options, std::size_t offset = 0);
 
     Options options;
