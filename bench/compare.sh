@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-all=(curtain_8k curtain_32k stand_alone refinement locking deviation)
+all=(curtain_8k curtain_32k front stand_alone refinement locking deviation)
 measure=true
 [[ "${1:-}" == "--charts" ]] && { measure=false; shift; }
 studies=("${@:-${all[@]}}")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands at the end of a call: what it did, or nothing. Reference: apsl::reference, never_worse.
+// What stands at the end of a call: what it did, or nothing. Reference: apsl::reference, is_worse.
 #ifndef APSL_NEVER_WORSE_H
 #define APSL_NEVER_WORSE_H
 

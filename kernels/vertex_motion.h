@@ -114,13 +114,7 @@ APSL_INLINE void start_walking(apsl_cloth cloth, bool active, float time_step, i
     }
 }
 
-// Δx_i = −w_i Σ_{a∋i} λ_a g_{a,i}, in scaled terms −√(2 w_i) Σ y_a ḡ_{a,i}; w is zero.
-APSL_INLINE float4 displacement(float inverse_mass, __global const uint* corner_offsets, __global const uint* corners,
-                                __global const apsl_gradients* gradients, __global const float* pressure, uint i) {
-    return -sqrt(2.0f * inverse_mass) * sum_over_corners(corner_offsets, corners, gradients, pressure, i);
-}
-
-// x_i += Δx_i.
+// x_i += Δx_i = −w_i Σ_{a∋i} λ_a g_{a,i}, in scaled terms −√(2 w_i) Σ y_a ḡ_{a,i}; its w is zero.
 APSL_INLINE void displace_vertices(apsl_cloth cloth, bool active, __global const uint* corner_offsets,
                                    __global const uint* corners, __global const apsl_gradients* gradients,
                                    __global const float* pressure, __global float4* predicted) {
@@ -149,7 +143,7 @@ APSL_INLINE void walk_vertices(apsl_cloth cloth, bool active, bool solved, int s
         const uint i = cloth.vertex_begin + v;
         float4 x = predicted[i], step = motion[i];
         if (solved && x.w > 0.0f) {
-            const float4 change = displacement(x.w, corner_offsets, corners, gradients, pressure, i);
+            const float4 change = -sqrt(2.0f * x.w) * sum_over_corners(corner_offsets, corners, gradients, pressure, i);
             x += change;
             step += parts * change;
             motion[i] = step;

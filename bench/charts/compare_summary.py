@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""What the results of `apsl compare` say about speed against accuracy: a table in Markdown. Expects the studies
-curtain_8k, curtain_32k and refinement of bench/studies as files of one folder."""
+"""What the results of `apsl compare` say about speed against accuracy: tables in Markdown. Expects the studies
+curtain_8k, curtain_32k, refinement and front of bench/studies as files of one folder."""
 
 import sys
 from pathlib import Path
@@ -89,6 +89,25 @@ def growth_row(results, target):
     return f"| time a triangle of ours to reach {shown(target)}, 2 k to 130 k triangles | grows by less than 2× | {text} |"
 
 
+def front_rows(results):
+    """Every run of the study against the paper's setting on the same scene: errors, iterations, time as a ratio."""
+    rows = ["| | setting | mean | greatest | CG iterations a frame | time |", "|---|---|---|---|---|---|"]
+    for scene in dict.fromkeys(run["scene"] for run in results["runs"]):
+        runs = [run for run in results["runs"] if run["scene"] == scene and held(run)]
+        paper = next((run for run in runs if is_paper_setting(run)), None)
+        if paper is None:
+            raise ChartError(f"{scene}: no run with the paper's setting")
+        name = scene
+        for run in [paper, *(run for run in runs if run is not paper and run["method"] != "none")]:
+            setting = "the paper's" if run is paper else f"{run['title']}: {knobs_of(run)}"
+            iterations = run["cg_iterations_per_solve"] * run["solves"] / run["frames"] if run["solves"] else None
+            rows.append(f"| {name} | {setting} | {shown(run[MEAN])} | {shown(run[GREATEST])} | "
+                        f"{'' if iterations is None else round(iterations)} | "
+                        f"{run['milliseconds'] / paper['milliseconds']:.2f} |")
+            name = ""
+    return rows
+
+
 def run(arguments):
     parser = OneLineParser(description=__doc__)
     parser.add_argument("folder", nargs="?", default="docs/accuracy", type=Path)
@@ -98,6 +117,7 @@ def run(arguments):
     for file, name in (("curtain_8k", "8 k"), ("curtain_32k", "32 k")):
         rows += size_rows(read_results(options.folder / f"{file}.json"), name)
     rows.append(growth_row(read_results(options.folder / "refinement.json"), options.target))
+    rows += ["", *front_rows(read_results(options.folder / "front.json"))]
     print("\n".join(rows))
 
 

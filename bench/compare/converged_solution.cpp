@@ -69,7 +69,8 @@ scenes::Scene with_small_steps(scenes::Scene scene, const ConvergedSettings& set
                            .sub_steps = settings.sub_steps,
                            .target_area_change = static_cast<float>(settings.target_area_change),
                            .tolerance = static_cast<float>(settings.tolerance),
-                           .max_iterations = 5000};
+                           .max_iterations = 5000,
+                           .stepping = Stepping::whole_step};
     scene.strain_limiting = limiting;
     return scene;
 }

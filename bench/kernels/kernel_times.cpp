@@ -17,8 +17,8 @@ std::string phase_of(const std::string& kernel) {
         {"CG: vectors", {"cg_update"}},
         {"displacements", {"gather_displacements"}},
         {"begin and end",
-         {"set_parameters", "predict_positions", "begin_solve", "measure_area_change", "end_call",
-          "update_velocities"}},
+         {"set_parameters", "predict_positions", "begin_call", "start_walk", "begin_solve", "measure_area_change",
+          "end_call", "update_velocities"}},
         {"all in one launch", {"filter_in_one_group"}},
     }};
     for (const auto& [phase, kernels] : phases)

@@ -48,7 +48,29 @@ nlohmann::ordered_json to_json(const RunSummary& summary) {
             {"status", status_name(summary.status)}};
 }
 
+nlohmann::ordered_json to_json(const OverStretchReport& report) {
+    nlohmann::ordered_json triangles = nlohmann::ordered_json::array();
+    for (const auto& [worst, why] : report.entries) {
+        triangles.push_back({{"triangle", worst.triangle},
+                             {"frame", worst.frame},
+                             {"edge_stretch", worst.edge_stretch},
+                             {"area_change", worst.area_change},
+                             {"why", why}});
+    }
+    return {{"above", kOverStretch}, {"count", report.count}, {"triangles", triangles}};
+}
+
 }  // namespace
+
+OverStretchReport describe(const OverStretch& over_stretch, const ClothState& cloth) {
+    constexpr std::size_t most = 10;
+    std::vector<OverStretchedTriangle> triangles = over_stretch.triangles();
+    OverStretchReport report{.count = triangles.size(), .entries = {}};
+    triangles.resize(std::min(triangles.size(), most));
+    for (const OverStretchedTriangle& worst : triangles)
+        report.entries.push_back({worst, over_stretch_cause(cloth, worst.triangle)});
+    return report;
+}
 
 RunSummary summarize(const std::vector<FrameReport>& frames) {
     RunSummary summary;
@@ -103,6 +125,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
     json["frames"] = nlohmann::ordered_json::array();
     for (const FrameReport& frame : report.frames) json["frames"].push_back(to_json(frame));
     json["summary"] = to_json(summarize(report.frames));
+    json["over_stretched"] = to_json(report.over_stretch);
     if (report.breakdown) {
         json["breakdown"] = {{"frame", report.breakdown->frame},
                              {"step", report.breakdown->step},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "pipeline/over_stretch.hpp"
+
 #include <apsl/stats.hpp>
 
 #include <cstddef>
@@ -38,6 +40,18 @@ struct Breakdown {
     std::string what;
 };
 
+/// Triangles with an edge that was longer than kOverStretch times its rest length in the run.
+struct OverStretchReport {
+    struct Entry {
+        OverStretchedTriangle worst;
+        std::string why;
+    };
+    std::size_t count = 0;
+    std::vector<Entry> entries;  ///< the ten with the longest edges, the longest first
+};
+
+OverStretchReport describe(const OverStretch& over_stretch, const ClothState& cloth);
+
 struct KernelReport {
     std::string name;
     std::int64_t launches = 0;
@@ -53,6 +67,7 @@ struct RunReport {
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step
     std::size_t device_bytes = 0;
     std::vector<FrameReport> frames;
+    OverStretchReport over_stretch;
     std::optional<Breakdown> breakdown;
     std::vector<KernelReport> kernels;  ///< only of a profiled run
 };
@@ -75,7 +90,7 @@ struct RunSummary {
 
 RunSummary summarize(const std::vector<FrameReport>& frames);
 
-/// "ok", "not_converged" or "diverged".
+/// "ok", "not_converged", "worsened" or "diverged".
 std::string status_name(Status status);
 
 /// The report as README and docs describe it. Numbers that are not finite become null.

@@ -110,6 +110,8 @@ int run_command(const RunOptions& options) {
         add_kernel_times(*opencl, report);
     }
 
+    report.over_stretch = describe(simulation.over_stretch(), simulation.cloth());
+
     if (output) output->finish();
     const nlohmann::ordered_json document = to_json(report);
     if (options.out) write_report(*options.out / "report.json", document);

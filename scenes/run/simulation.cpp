@@ -28,6 +28,12 @@ std::optional<std::size_t> first_not_finite(const std::vector<double>& values) {
     return static_cast<std::size_t>(found - values.begin()) / 3;
 }
 
+std::string first_offender(const Stats& stats) {
+    if (stats.offender == Offender::none) return {};
+    const char* what = stats.offender == Offender::vertex ? "vertex " : "triangle ";
+    return ", first at " + (what + std::to_string(stats.offender_index));
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, SceneCloth cloth, FilterStage filter, bool keep_area_changes)
@@ -121,7 +127,8 @@ void Simulation::run_step(int step, FrameReport& report) {
     }
     measure_areas(report, std::holds_alternative<CustomFilter>(filter_) ? std::nullopt : stats);
     if (stats && stats->status == Status::diverged) {
-        return break_down(step, "strain_limiting", "the filter met or made a number that is not finite", report);
+        return break_down(step, "strain_limiting",
+                          "the filter met or made a number that is not finite" + first_offender(*stats), report);
     }
 
     const Stopwatch after_filter;
@@ -137,6 +144,7 @@ void Simulation::run_step(int step, FrameReport& report) {
     const EdgeStretch stretch = edge_stretch(cloth_);
     report.max_edge_stretch = std::max(report.max_edge_stretch, stretch.max);
     report.min_edge_stretch = std::min(report.min_edge_stretch, stretch.min);
+    if (stretch.max > kOverStretch) over_stretch_.measure(cloth_, frame_);
 }
 
 FrameReport Simulation::run_frame() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/implicit_springs.hpp"
+#include "pipeline/over_stretch.hpp"
 #include "run/filter_stage.hpp"
 #include "run/report.hpp"
 #include "run/scene.hpp"
@@ -28,6 +29,8 @@ public:
     FilterStage& filter() { return filter_; }
     /// Of the last step, |A − A⁰| / A⁰ per triangle as in FrameReport, [T]; empty without keep_area_changes.
     const std::vector<double>& area_changes() const { return area_changes_; }
+    /// At the ends of all steps so far.
+    const OverStretch& over_stretch() const { return over_stretch_; }
     /// In the order of a step, as the report lists them.
     const std::vector<std::string>& stages() const { return stages_; }
     /// Steps whose spring solve ended short of its tolerance.
@@ -55,6 +58,7 @@ private:
     int frame_ = 0;
     int unconverged_spring_solves_ = 0;
     std::vector<double> area_changes_;
+    OverStretch over_stretch_;
     std::optional<Breakdown> breakdown_;
     std::vector<std::string> stages_;
     std::vector<std::string> warnings_;

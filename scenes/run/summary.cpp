@@ -40,6 +40,14 @@ std::string summary_text(const RunReport& report) {
     text += format("  RMS area change        %.3f %%\n", 100.0 * summary.rms_area_change);
     text += format("  edges                  %.2f to %.2f of their rest length\n", summary.min_edge_stretch,
                    summary.max_edge_stretch);
+    if (report.over_stretch.count > 0) {
+        const auto& [worst, why] = report.over_stretch.entries.front();
+        text += format(
+            "  over-stretched         %zu triangles with an edge beyond %.1f times; triangle %u at %.2f times, "
+            "area off by %.2f %%, %s\n",
+            report.over_stretch.count, kOverStretch, worst.triangle, worst.edge_stretch, 100.0 * worst.area_change,
+            why.c_str());
+    }
     if (filtered) {
         text += format("  CG iterations          %.1f a solve, %lld solves\n", summary.cg_iterations_per_solve,
                        static_cast<long long>(summary.solves));

@@ -177,15 +177,15 @@ struct BasicStrainLimiter<Real>::Implementation {
                 return name_offender(Offender::triangle, a);
     }
 
-    /// False where what the call did is to be dropped: greatest and RMS area change are then those at x̃ + Δt ṽ. Between
+    /// True where what the call did is to be dropped: greatest and RMS area change are then those at x̃ + Δt ṽ. Between
     /// a greater maximum and a greater RMS, the RMS decides: it is what the solves reduce.
-    bool better(const AreaChange& initial, const AreaChange& change) {
+    bool is_worse(const AreaChange& initial, const AreaChange& change) {
         const bool rose = change.max > initial.max || change.rms > initial.rms;
         const bool at_rest = initial.max <= 1e-5;  // 32-bit positions tell no better
         const bool worse = rose && (at_rest || change.rms >= initial.rms);
         set_area_change(worse ? initial : change);
         if (rose && !at_rest) stats.status = Status::worsened;
-        return !worse;
+        return worse;
     }
 
     void set_area_change(const AreaChange& change) {
@@ -237,7 +237,8 @@ struct BasicStrainLimiter<Real>::Implementation {
         const bool any = stats.sub_steps > 0;
         if (any && !filtered_velocities(buffers, time_step)) return;
         stats.status = all_converged ? Status::ok : Status::not_converged;
-        if (better(initial, change) && any) std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
+        if (!is_worse(initial, change) && any)
+            std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
     }
 };
 

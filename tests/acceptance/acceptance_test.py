@@ -209,5 +209,44 @@ class Garments(Case):
                         self.assertLessEqual(frame["max_area_change"], unlimited[number]["max_area_change"], number)
 
 
+class CornerTriangles(Case):
+    """Curtains that hang by two corners, on uniform diagonals: there a pinned corner may lie in one triangle alone. Its
+    area is held; that its edges are not, the report says."""
+
+    CORNERS = ([0, 32], [1056, 1088], [0, 1056], [32, 1088])
+    ALONE = {0: 0, 1088: 2047}  # pinned vertex: its only triangle
+
+    @classmethod
+    def run_scenes(cls):
+        cls.reports = {}
+        for pins in cls.CORNERS:
+            cls.reports[tuple(pins)] = cls.run_scene(
+                f"corners_{pins[0]}_{pins[1]}", "curtain.json", "--set", "mesh.grid.vertices=[33,33]", "--set",
+                'mesh.grid.diagonals="uniform"', "--set", f'pins=[{{"vertices":{pins}}}]', "--set", "strain_limiting={}")
+
+    def test_areas_are_held(self):
+        for pins, report in self.reports.items():
+            with self.subTest(pins=pins):
+                self.assertLessEqual(report["summary"]["max_area_change"], 0.02)
+
+    def test_the_report_names_what_gives_way(self):
+        for pins, report in self.reports.items():
+            named = report["over_stretched"]
+            with self.subTest(pins=pins):
+                self.assertGreater(report["summary"]["max_edge_stretch"], 1.5)
+                self.assertEqual(named["triangles"][0]["edge_stretch"], report["summary"]["max_edge_stretch"])
+                self.assertEqual(len(named["triangles"]), min(named["count"], 10))
+                why = {entry["triangle"]: entry["why"] for entry in named["triangles"]}
+                for pin, triangle in self.ALONE.items():
+                    if pin in pins:
+                        self.assertTrue(why[triangle].startswith(
+                            f"hangs by pinned vertex {pin}, in no other triangle"), why[triangle])
+
+    def test_nothing_is_named_where_edges_hold(self):
+        report = self.run_scene("twist", "twist.json", "--frames", "30")
+        self.assertLess(report["summary"]["max_edge_stretch"], 1.5)
+        self.assertEqual(report["over_stretched"], {"above": 1.5, "count": 0, "triangles": []})
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]], defaultTest=sys.argv[3])

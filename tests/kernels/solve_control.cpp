@@ -95,7 +95,7 @@ TEST_CASE("end_call: greatest and RMS change of all groups", "[end_call]") {
     }
 }
 
-TEST_CASE("end_call: a call that went wrong is diverged; no measured triangle means no change", "[end_call]") {
+TEST_CASE("end_call: a call that went wrong is diverged, no measured triangle means no change", "[end_call]") {
     Reported wrong(paper_setting);
     wrong.arrays.write_partials(0, APSL_PARTIAL_NOT_FINITE, {0.0, 0.0, 2.0, 0.0, 0.0});
     launch::end_call(wrong.arrays, {});

@@ -24,8 +24,10 @@ PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2,
 
 
 def made_up_run(scene, method, milliseconds, mean, knobs=None, triangles=8192, status="ok"):
-    return {"scene": scene, "method": method, "title": method.replace("_", " "), "knobs": {"steps_per_frame": 1, **(knobs or {"iterations": 5})},
-            "status": status, "triangles": triangles, "limiter_seconds_per_frame": {"median": 1e-3 * milliseconds},
+    return {"scene": scene, "method": method, "title": method.replace("_", " "),
+            "knobs": {"steps_per_frame": 1, **(knobs or {"iterations": 5})},
+            "status": status, "triangles": triangles, "frames": 2, "solves": 20, "cg_iterations_per_solve": 3.5,
+            "limiter_seconds_per_frame": {"median": 1e-3 * milliseconds},
             "max_area_change": 2.0 * mean, "mean_max_area_change": mean, "rms_area_change": 0.3 * mean,
             "mean_displacement": [0.0, -mean, 0.0], "frame_max_area_change": [mean, 2.0 * mean, None],
             "deviation": {"frames": [{"frame": 9, "rms": 0.01 * mean, "max": 0.1 * mean}]}}
@@ -108,10 +110,12 @@ class Charts(unittest.TestCase):
         self.write(made_up_results(), "curtain_8k.json")
         self.write(made_up_results(triangles=32768), "curtain_32k.json")
         self.write(made_up_results(), "refinement.json")
+        self.write(made_up_results(), "front.json")
         code, said, complained = self.run_chart("compare_summary", self.folder)
         self.assertEqual((code, complained), (0, ""))
         # 10 sub-steps take 2 ms: 4 % with the paper's setting, 1 % with rising α, which has 4 % after 1 ms at most.
         self.assertIn("a third of 4 % | 1 %, 4 times less", said)
+        self.assertRegex(said, r"\| curtain \| the paper's \| 4 % \| .* \| 1\.00 \|")
         # 4 % takes PBD edges 10 ms, ours at most 1 ms.
         runs = compare_results.read_results(self.folder / "curtain_8k.json")["runs"]
         held = [run for run in runs if run["method"] != "none" and compare_results.held(run)]
