@@ -255,6 +255,14 @@ TEST_CASE("a limiter in the caller's scratch memory allocates nothing, and gives
             for (std::size_t n = 0; n < after.size(); ++n)
                 if ((n < offset || n >= offset + needed) && after[n] != 0xFF) FAIL("byte " << n << " was written");
 
+            // Out of it and back into it.
+            limiter.rebuild(topologies);
+            check_same(outcome(limiter, cloths, {&few, 1}), outcome(own, cloths, {&few, 1}));
+            const int before = opencl_calls().allocations;
+            limiter.rebuild(topologies, {scratch.get(), offset});
+            CHECK(opencl_calls().allocations == before);
+            check_same(outcome(limiter, cloths, {&few, 1}), outcome(own, cloths, {&few, 1}));
+
             CHECK_THROWS_WITH(
                 StrainLimiter(device().context, device().id, topologies, options, {}, {scratch.get(), needed / 2}),
                 Catch::StartsWith("scratch holds"));
