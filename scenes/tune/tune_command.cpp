@@ -24,21 +24,21 @@ class Table {
 public:
     explicit Table(std::FILE* stream) : stream_(stream) {
         std::fprintf(stream_,
-                     "steps  sub-steps  first α  last α  tolerance  iterations  frames  area change  "
+                     "steps  sub-steps  stepping     first α  last α  tolerance  iterations  frames  area change  "
                      "limiter ms  frame ms\n");
     }
 
     void add(const Trial& trial, const TuningGoal& goal) {
         const LimiterSettings& s = trial.settings;
-        std::fprintf(stream_, "%5d  %9d  %7.4g  %6.4g  %9.3g  %10d  %6d  %9.3f %%  %10.3f  %8.3f  %s\n",
-                     s.steps_per_frame, s.sub_steps,
+        std::fprintf(stream_, "%5d  %9d  %-11s  %7.4g  %6.4g  %9.3g  %10d  %6d  %9.3f %%  %10.3f  %8.3f  %s\n",
+                     s.steps_per_frame, s.sub_steps, s.stepping.c_str(),
                      s.first_regularization > 0.0 ? s.first_regularization : s.regularization, s.regularization,
                      s.tolerance, s.max_iterations, trial.frames, 100.0 * trial.max_area_change,
                      1e3 * trial.limiter_seconds, 1e3 * trial.seconds(), verdict(trial, goal));
     }
 
     void add_without_limiter(const Trial& trial, const TuningGoal& goal) {
-        std::fprintf(stream_, "%5d  %-49s %7d  %9.3f %%  %10s  %8.3f  %s\n", trial.settings.steps_per_frame,
+        std::fprintf(stream_, "%5d  %-62s %7d  %9.3f %%  %10s  %8.3f  %s\n", trial.settings.steps_per_frame,
                      "(no strain limiting)", trial.frames, 100.0 * trial.max_area_change, "-", 1e3 * trial.seconds(),
                      verdict(trial, goal));
     }

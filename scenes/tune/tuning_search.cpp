@@ -11,13 +11,17 @@ namespace {
 
 constexpr std::array kSubSteps{1, 2, 3, 5, 8, 12, 20, 32, 50};
 
-// Of the first sub-step, 0 where all are alike, and of the last. Where α rises, solves start from kept pressures.
-struct Regularizations {
+// What a number of sub-steps is tried with: α of the first one, 0 where all are alike, and of the last; small steps
+// need tighter solves.
+struct Scheme {
+    bool small_steps;
     double first, last;
 };
-constexpr std::array kRegularizations{
-    Regularizations{0.0, 1.2},  Regularizations{0.0, 1.1},  Regularizations{0.0, 1.05},  Regularizations{0.0, 1.02},
-    Regularizations{0.0, 1.01}, Regularizations{1.02, 1.2}, Regularizations{1.005, 1.2}, Regularizations{1.005, 2.0}};
+constexpr std::array kSchemes{Scheme{false, 0.0, 1.2},   Scheme{false, 0.0, 1.1},   Scheme{false, 0.0, 1.05},
+                              Scheme{false, 0.0, 1.02},  Scheme{false, 0.0, 1.01},  Scheme{false, 1.02, 1.2},
+                              Scheme{false, 1.005, 1.2}, Scheme{false, 1.005, 2.0}, Scheme{true, 0.0, 1.2},
+                              Scheme{true, 1.1, 1.4},    Scheme{true, 0.0, 1.05}};
+constexpr double kSmallStepsTolerance = 0.03;
 constexpr std::array kStepFactors{1, 2, 4, 8};
 constexpr std::size_t kMaxConfirmations = 6;
 
@@ -25,7 +29,8 @@ struct Interrupted {};
 
 void set_sub_steps(LimiterSettings& settings, int sub_steps) {
     settings.sub_steps = sub_steps;
-    settings.kept_pressures = settings.first_regularization > 0.0 ? sub_steps : 0;
+    // Small steps gain little from them.
+    settings.kept_pressures = settings.first_regularization > 0.0 && settings.stepping != "small_steps" ? sub_steps : 0;
 }
 
 class Search {
@@ -95,16 +100,25 @@ private:
         return !goal_.meets_target(trial) && goal_.within_budget(trial);
     }
 
-    // The fewest sub-steps that meet the target, for each pair of regularizations. False where more steps cannot pay.
+    static LimiterSettings with_scheme(LimiterSettings settings, const Scheme& scheme) {
+        settings.first_regularization = scheme.first;
+        settings.regularization = scheme.last;
+        settings.stepping = scheme.small_steps ? "small_steps" : "whole_step";
+        if (scheme.small_steps) settings.tolerance = kSmallStepsTolerance;
+        return settings;
+    }
+
+    // The fewest sub-steps that meet the target, for each scheme. False where more steps cannot pay.
     bool search_with_steps(int steps_per_frame, bool tune_regularization) {
-        LimiterSettings settings = given_;
-        settings.steps_per_frame = steps_per_frame;
-        std::vector<Regularizations> regularizations(kRegularizations.begin(), kRegularizations.end());
-        if (!tune_regularization) regularizations = {{given_.first_regularization, given_.regularization}};
+        LimiterSettings given = given_;
+        given.steps_per_frame = steps_per_frame;
+        std::vector<LimiterSettings> starts{given};
+        if (tune_regularization) {
+            starts.clear();
+            for (const Scheme& scheme : kSchemes) starts.push_back(with_scheme(given, scheme));
+        }
         auto place = static_cast<std::ptrdiff_t>(kSubSteps.size() / 2);
-        for (const Regularizations& regularization : regularizations) {
-            settings.first_regularization = regularization.first;
-            settings.regularization = regularization.last;
+        for (LimiterSettings& settings : starts) {
             const auto misses = [&](std::ptrdiff_t at) {
                 set_sub_steps(settings, kSubSteps[static_cast<std::size_t>(at)]);
                 return needs_more(settings);
@@ -127,7 +141,7 @@ private:
     void refine() {
         for (int round = 0; round < 2; ++round) {
             const LimiterSettings centre = best_->settings;
-            for (const double tolerance : {0.3, 0.2, 0.1, 0.03}) {
+            for (const double tolerance : {0.3, 0.2, 0.1, 0.03, 0.02}) {
                 LimiterSettings settings = centre;
                 settings.tolerance = tolerance;
                 try_settings(settings);

@@ -34,6 +34,7 @@ LimiterSettings limiter_settings(const nlohmann::ordered_json& document) {
     settings.max_iterations = limiting.value("max_iterations", standard.max_iterations);
     settings.kept_pressures = limiting.value("kept_pressures", 0);
     settings.first_regularization = limiting.value("first_regularization", shortest(standard.first_regularization));
+    settings.stepping = limiting.value("stepping", settings.stepping);
     settings.regularization = shortest(standard.regularization);
     if (limiting.contains("regularization") && limiting["regularization"].is_number()) {
         settings.regularization = limiting["regularization"].get<double>();
@@ -53,6 +54,7 @@ nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const Limi
     if (settings.first_regularization != before.first_regularization) {
         limiting["first_regularization"] = settings.first_regularization;
     }
+    if (settings.stepping != before.stepping) limiting["stepping"] = settings.stepping;
     if (settings.kept_pressures != before.kept_pressures) limiting["kept_pressures"] = settings.kept_pressures;
     limiting["tolerance"] = settings.tolerance;
     limiting["max_iterations"] = settings.max_iterations;

@@ -16,8 +16,9 @@ namespace apsl::scenes {
 struct LimiterSettings {
     int steps_per_frame = 1;  ///< a frame keeps its length
     int sub_steps = 10;
-    double regularization = 1.2;        ///< without meaning where the scene has one for each triangle
-    double first_regularization = 0.0;  ///< of the first sub-step; 0: the same in all
+    double regularization = 1.2;         ///< without meaning where the scene has one for each triangle
+    double first_regularization = 0.0;   ///< of the first sub-step; 0: the same in all
+    std::string stepping = "automatic";  ///< as scenes name it
     int kept_pressures = 0;
     double tolerance = 0.1;
     int max_iterations = 50;

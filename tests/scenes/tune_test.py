@@ -60,7 +60,7 @@ class Tune(unittest.TestCase):
     def test_the_scene_goes_to_standard_output_alone(self):
         done = self.apsl("tune", self.scene, "--target", 0.2, "--frames", 2, "--set", "density=0.3")
         self.assertEqual(json.loads(done.stdout)["density"], 0.3)
-        self.assertIn("sub-steps  first α  last α", done.stderr)
+        self.assertIn("sub-steps  stepping     first α  last α", done.stderr)
 
     def test_stages_that_could_go_are_named(self):
         scene = self.write("easy.json", {**FLAG, "colliders": FAR_AWAY, "frames": 4})

@@ -50,6 +50,7 @@ TEST_CASE("the search finds the fewest sub-steps that meet the target") {
     CHECK(best.settings.sub_steps == 8);
     CHECK(best.settings.steps_per_frame == 1);
     CHECK(best.settings.regularization == 1.2);
+    CHECK(best.settings.stepping == "whole_step");  // small steps would do no better
     CHECK(best.frames == 200);
     CHECK(cloth.frames < 60 * cloth.trials);  // most trials are short
 }
@@ -84,10 +85,14 @@ TEST_CASE("settings change nothing else in a scene") {
           R"({"time_step":0.005,"strain_limiting":{"matrix":"consistent","regularization":[1.1,1.2],"sub_steps":3,)"
           R"("tolerance":0.1,"max_iterations":50},"frames":3,"steps_per_frame":2})");
     CHECK(limiter_settings(changed).sub_steps == 3);
-    const LimiterSettings rising{
-        .sub_steps = 4, .regularization = 1.05, .first_regularization = 1.01, .kept_pressures = 4};
+    const LimiterSettings rising{.sub_steps = 4,
+                                 .regularization = 1.05,
+                                 .first_regularization = 1.01,
+                                 .stepping = "small_steps",
+                                 .kept_pressures = 4};
     const auto risen = with_settings(document, rising);
     CHECK(risen["strain_limiting"]["first_regularization"] == 1.01);
+    CHECK(risen["strain_limiting"]["stepping"] == "small_steps");
     CHECK(risen["strain_limiting"]["kept_pressures"] == 4);
     CHECK(limiter_settings(risen) == rising);
 }
