@@ -43,7 +43,7 @@ DEVICE, WARM_UP_FRAMES = 2, 2
 print(f"{'triangles':>9} {'pipeline, ms':>13} {'alone, ms':>10} {'kernels, ms':>12} {'pipeline/alone':>15} "
       f"{'pipeline/kernels':>17}")
 for grid in (33, 129, 513):
-    ratios = []
+    ratios, times = [], []
     for number in range(rounds):
         events = json.loads((work / f"trace_{grid}_{number}.json").read_text())["traceEvents"]
         pipeline = 1e-6 * statistics.median(
@@ -54,11 +54,16 @@ for grid in (33, 129, 513):
         kernels = sum(row["median_seconds"] for row in rows if row["quantity"] == "phase" and row["clock"] == "device")
         triangles = rows[0]["triangles"]
         ratios.append((pipeline / alone, pipeline / kernels))
+        times.append((pipeline, alone, kernels))
         print(f"{triangles:9} {1e3 * pipeline:13.3f} {1e3 * alone:10.3f} {1e3 * kernels:12.3f} {ratios[-1][0]:15.3f} "
               f"{ratios[-1][1]:17.3f}")
     calls = json.loads((work / f"calls_{grid}.json").read_text())["frames"]
     waits = calls["host_waits"] + calls["polls"] + calls["blocking_calls"]
     by_alone, by_kernels = (statistics.median(column) for column in zip(*ratios))
     print(f"{triangles:9} median of {rounds} rounds {by_alone:37.3f} {by_kernels:17.3f}   "
-          f"host waits within frames: {waits}\n")
+          f"host waits within frames: {waits}")
+    # What else the machine does only adds to a time.
+    pipeline, alone, kernels = (min(column) for column in zip(*times))
+    print(f"{triangles:9} {1e3 * pipeline:13.3f} {1e3 * alone:10.3f} {1e3 * kernels:12.3f} {pipeline / alone:15.3f} "
+          f"{pipeline / kernels:17.3f}   least of {rounds} rounds\n")
 PYTHON

@@ -28,7 +28,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/apsl DESTINATION ${CMAKE_INSTALL
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/apsl-config.cmake.in
   ${PROJECT_BINARY_DIR}/apsl-config.cmake INSTALL_DESTINATION ${package_directory})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/apsl-config-version.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/apsl-config-version.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/apsl-config.cmake ${PROJECT_BINARY_DIR}/apsl-config-version.cmake
   DESTINATION ${package_directory} COMPONENT development)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the Debian packages libapsl0.1, libapsl-dev and apsl in build/debian. --libraries leaves out the program.
+# Makes the Debian packages libapsl1, libapsl-dev and apsl in build/debian. --libraries leaves out the program.
 # STATIC_BUILD and SHARED_BUILD name build trees to take the libraries from instead of building them there.
 set -euo pipefail
 cd "$(dirname "$0")/.."

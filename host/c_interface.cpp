@@ -66,6 +66,16 @@ void require(const void* pointer, const char* name) {
     if (!pointer) throw apsl::Error(apsl::ErrorCode::invalid_argument, std::string(name) + " is null");
 }
 
+/// Fields to come mean nothing to this version.
+template <class Struct>
+void require_reserved_zero(const Struct& given, const char* name) {
+    for (const uint32_t word : given.reserved)
+        if (word != 0)
+            throw apsl::Error(apsl::ErrorCode::invalid_argument,
+                              std::string(name) + ".reserved holds " + std::to_string(word) +
+                                  ", expected zeros: begin with apsl_limiter_default_" + name + "()");
+}
+
 std::span<const cl_event> events(cl_uint wait_count, const cl_event* wait_list) {
     if (wait_count > 0) require(wait_list, "wait_list");
     return {wait_list, wait_count};
@@ -74,6 +84,7 @@ std::span<const cl_event> events(cl_uint wait_count, const cl_event* wait_list) 
 /// The defaults where there are none.
 apsl::Options options_from(const apsl_limiter_options* options) {
     const apsl_limiter_options o = options ? *options : apsl_limiter_default_options();
+    require_reserved_zero(o, "options");
     return {.matrix = static_cast<apsl::Matrix>(o.matrix),
             .apply = static_cast<apsl::Apply>(o.apply),
             .execution = static_cast<apsl::Execution>(o.execution),
@@ -89,6 +100,7 @@ apsl::Options options_from(const apsl_limiter_options* options) {
 }
 
 apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
+    require_reserved_zero(p, "parameters");
     return {.time_step = p.time_step,
             .regularization = p.regularization,
             .sub_steps = p.sub_steps,
@@ -153,7 +165,8 @@ apsl_limiter_options apsl_limiter_default_options(void) {
             o.inverse_mass_stride,
             o.positions_only,
             o.regularization_per_triangle,
-            o.kept_pressures};
+            o.kept_pressures,
+            {}};
 }
 
 apsl_limiter_parameters apsl_limiter_default_parameters(void) {
@@ -167,7 +180,8 @@ apsl_limiter_parameters apsl_limiter_default_parameters(void) {
             p.adaptive_iterations,
             p.first_regularization,
             static_cast<int32_t>(p.stepping),
-            p.enabled};
+            p.enabled,
+            {}};
 }
 
 apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_count, size_t vertex_count,

@@ -13,6 +13,8 @@ WORST_SHOWN = 10.0  # 1000 %: a run beyond it has broken down, whatever its stat
 RIVAL_COLOURS = ("#D55E00", "#009E73", "#CC79A7", "#E69F00", "#8c564b", "#6b6ecf", "#637939")
 RIVAL_MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">")
 OUR_COLOURS = ("#0072B2", "#56B4E9", "#003f6b", "#4a90c2", "#7fb3d5", "#1f4e79", "#9ecae1")
+OUR_MARKERS = ("o", "s", "D", "^", "v", "P", "X", "*")
+SMALL_STEPS_COLOUR = "#1a1aff"  # apart from the other blues: what the library does by default
 
 
 def results_parser(description, scene=False):
@@ -70,7 +72,8 @@ def styles(results):
         if method in table:
             continue
         if is_ours(method):
-            table[method] = (OUR_COLOURS[ours % len(OUR_COLOURS)], "o", 2.2)
+            colour = SMALL_STEPS_COLOUR if method == "apsl_small_steps" else OUR_COLOURS[ours % len(OUR_COLOURS)]
+            table[method] = (colour, OUR_MARKERS[ours % len(OUR_MARKERS)], 2.2)
             ours += 1
         else:
             table[method] = (RIVAL_COLOURS[rivals % len(RIVAL_COLOURS)],

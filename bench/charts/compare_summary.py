@@ -24,7 +24,7 @@ def shown(value):
 
 def knobs_of(run):
     return ", ".join(f"{name.split('.')[-1]} {value:g}" for name, value in run["knobs"].items()
-                     if isinstance(value, (int, float)) and name.split(".")[-1] not in (
+                     if isinstance(value, (int, float)) and value > 0 and name.split(".")[-1] not in (
                          "max_iterations", "kept_pressures", "steps_per_frame", "adaptive_iterations"))
 
 

@@ -6,7 +6,10 @@
  * The C interface: the objects of strain_limiter.hpp and topology.hpp behind handles, where their full contract is.
  *
  * Functions that can fail return an apsl_result, 0 for success; apsl_last_error() then says in one line what was wrong.
- * Nothing is thrown. One limiter per thread; a topology may be shared. */
+ * Nothing is thrown. One limiter per thread; a topology may be shared.
+ *
+ * Versions 1.x only add: functions, enumerators, and fields in what is `reserved` in structs, where 0 will stand for
+ * what there was before. A program built with 1.0 runs with every later 1.x library. */
 
 #include <apsl/export.hpp>
 #include <apsl/version.hpp>
@@ -96,6 +99,7 @@ typedef struct apsl_limiter_options {
     int32_t positions_only;              /**< not 0: no velocities; positions are the end of the step, in and out */
     int32_t regularization_per_triangle; /**< not 0: a regularization buffer is given with every call */
     uint32_t kept_pressures;             /**< sub-steps whose pressures the next call's solves start from */
+    uint32_t reserved[8];                /**< zeros; room for fields to come, so that the size stays */
 } apsl_limiter_options;
 
 /** apsl::Parameters: what may change from call to call. Begin with apsl_limiter_default_parameters(). */
@@ -110,6 +114,7 @@ typedef struct apsl_limiter_parameters {
     float first_regularization;  /**< 0: alpha is the same in every sub-step; else > 1, that of the first */
     int32_t stepping;            /**< apsl_stepping */
     int32_t enabled;             /**< 0: the cloth is left alone in this call; 1 by default */
+    uint32_t reserved[8];        /**< zeros; room for fields to come, so that the size stays */
 } apsl_limiter_parameters;
 
 /** apsl::BufferView: 32-bit floats in a buffer of the caller's. */

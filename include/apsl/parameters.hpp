@@ -2,6 +2,7 @@
 #pragma once
 
 #include <apsl/export.hpp>
+#include <apsl/version.hpp>
 
 #include <cstdint>
 
@@ -37,6 +38,8 @@ enum class Stepping : std::int32_t {
     small_steps = 2,
 };
 
+APSL_STRUCTS_BEGIN
+
 /// What may change from one filter call to the next.
 struct Parameters {
     float time_step = 1.0f / 60.0f;  ///< s, > 0; Δt of Algorithm 1
@@ -60,6 +63,8 @@ struct Parameters {
     /// what is kept for its next call stays.
     bool enabled = true;
 };
+
+APSL_STRUCTS_END
 
 /// Throws Error(invalid_argument) naming the first field that is out of range or not finite.
 APSL_API void validate(const Parameters& parameters);

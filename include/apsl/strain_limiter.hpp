@@ -6,6 +6,7 @@
 #include <apsl/parameters.hpp>
 #include <apsl/stats.hpp>
 #include <apsl/topology.hpp>
+#include <apsl/version.hpp>
 
 #include <CL/cl.h>
 
@@ -17,6 +18,8 @@
 #include <vector>
 
 namespace apsl {
+
+APSL_STRUCTS_BEGIN
 
 /// What is compiled into the kernels of a StrainLimiter.
 struct Options {
@@ -68,6 +71,8 @@ struct Buffers {
     BufferView rest_areas;           ///< m², [T]; a triangle with rest area ≤ 0 is left alone
     BufferView regularization = {};  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
 };
+
+APSL_STRUCTS_END
 
 /// What became of the program binary given to a StrainLimiter. Unless taken, the program was built from source.
 enum class ProgramBinaryUse : std::int32_t {

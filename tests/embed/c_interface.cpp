@@ -258,4 +258,30 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(p.first_regularization == parameters.first_regularization);
     CHECK(p.stepping == static_cast<int>(parameters.stepping));
     CHECK(p.enabled == 1);
+    for (const std::uint32_t word : o.reserved) CHECK(word == 0);
+    for (const std::uint32_t word : p.reserved) CHECK(word == 0);
+}
+
+TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {
+    const MovingCloth cloth = moving_cloth(grid(3, 3, 1.0, 1.0, Diagonals::alternating), 1);
+    const CTopology topology(cloth);
+    apsl_limiter_options options = apsl_limiter_default_options();
+    options.reserved[7] = 5;
+    apsl_limiter* limiter = nullptr;
+    CHECK(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &options, &limiter) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(limiter == nullptr);
+    CHECK(std::string(apsl_last_error()).find("options.reserved holds 5, expected zeros") != std::string::npos);
+
+    REQUIRE(apsl_limiter_create(device().context, device().id, &topology.topology, 1, nullptr, &limiter) ==
+            APSL_SUCCESS);
+    const CallerBuffers buffers({&cloth, 1}, {});
+    const apsl_limiter_buffers views = c_views(buffers);
+    const Owned<cl_command_queue> queue = in_order_queue();
+    apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+    parameters.reserved[0] = 1;
+    CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 0, nullptr, nullptr) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(std::string(apsl_last_error()).find("parameters.reserved holds 1") != std::string::npos);
+    apsl_limiter_destroy(limiter);
 }

@@ -19,8 +19,10 @@ std::vector<std::shared_ptr<const Topology>> topologies_of(const FuzzCase& c) {
 bool same_options(const Options& a, const Options& b) {
     return a.matrix == b.matrix && a.apply == b.apply && a.execution == b.execution &&
            a.work_group_size == b.work_group_size && a.position_stride == b.position_stride &&
-           a.velocity_stride == b.velocity_stride && a.regularization_per_triangle == b.regularization_per_triangle &&
-           a.kept_pressures == b.kept_pressures;
+           a.velocity_stride == b.velocity_stride && a.position_component_stride == b.position_component_stride &&
+           a.velocity_component_stride == b.velocity_component_stride &&
+           a.inverse_mass_stride == b.inverse_mass_stride &&
+           a.regularization_per_triangle == b.regularization_per_triangle && a.kept_pressures == b.kept_pressures;
 }
 
 }  // namespace

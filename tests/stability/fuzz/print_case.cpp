@@ -10,7 +10,7 @@ void print(const Parameters& p, std::ostream& out) {
         << ", .tolerance = " << p.tolerance << ", .max_iterations = " << p.max_iterations
         << ", .adaptive_iterations = " << p.adaptive_iterations
         << ", .first_regularization = " << p.first_regularization << ", .stepping = " << static_cast<int>(p.stepping)
-        << "}";
+        << ", .enabled = " << p.enabled << "}";
 }
 
 const char* array_name(std::vector<double> MovingCloth::* array) {
@@ -44,7 +44,8 @@ void print(const FuzzCase& c, std::ostream& out) {
     out << "options: " << (c.options.matrix == Matrix::printed ? "printed" : "consistent")
         << (c.options.apply == Apply::assembled_csr ? ", assembled" : ", matrix-free") << ", execution "
         << static_cast<int>(c.options.execution) << ", work-group size " << c.options.work_group_size << ", strides "
-        << c.options.position_stride << " and " << c.options.velocity_stride
+        << c.options.position_stride << " and " << c.options.velocity_stride << ", from component to component "
+        << c.options.position_component_stride << ", of masses " << c.options.inverse_mass_stride
         << (c.options.regularization_per_triangle ? ", alpha per triangle" : "") << ", kept pressures "
         << c.options.kept_pressures << ", offset " << c.offset << '\n';
     for (std::size_t n = 0; n < c.cloths.size(); ++n) {

@@ -48,6 +48,17 @@ Check check_idle(const MovingCloth& cloth, const Filtered& filtered) {
     return {};
 }
 
+Check check_off(const MovingCloth& cloth, const Filtered& filtered) {
+    const Stats& stats = filtered.stats;
+    if (stats.status != Status::off)
+        return broken("switched off, and the status is another", {{"status", static_cast<double>(stats.status)}});
+    if (!same_velocities(cloth.velocities, filtered.velocities)) return broken("off, but velocities changed", {});
+    if (stats.sub_steps != 0 || stats.cg_iterations != 0 || stats.max_area_change != 0.0f ||
+        stats.rms_area_change != 0.0f || stats.offender != Offender::none)
+        return broken("off, and statistics are not zero", {{"max", stats.max_area_change}});
+    return {};
+}
+
 Check check_status(const CallFacts& facts, const Parameters& parameters, const Options& options,
                    const Filtered& filtered) {
     const Stats& stats = filtered.stats;
@@ -200,6 +211,7 @@ bool same_velocities(const std::vector<double>& a, const std::vector<double>& b)
 std::optional<Violation> violation_of(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
                                       const Filtered& filtered, const FuzzedFilter& filter) {
     if (!filter.on_device() && refused_by_reference(cloth)) return {};
+    if (!parameters.enabled) return check_off(cloth, filtered);
     const CallFacts facts(cloth, options, parameters, filtered, filter.epsilon());
     Check check = check_velocities(cloth, filtered);
     if (!check) check = check_status(facts, parameters, options, filtered);

@@ -95,8 +95,12 @@ private:
         changed |= attempt([](FuzzCase& c) { return std::exchange(c.twice, false); });
         changed |= attempt([](FuzzCase& c) { return std::exchange(c.in_single_precision, false); });
         changed |= attempt([](FuzzCase& c) {
-            const bool a = reset(c.options, &Options::position_stride), b = reset(c.options, &Options::velocity_stride);
-            return a || b;
+            bool any = false;
+            for (const auto stride :
+                 {&Options::position_stride, &Options::velocity_stride, &Options::position_component_stride,
+                  &Options::velocity_component_stride, &Options::inverse_mass_stride})
+                any |= reset(c.options, stride);
+            return any;
         });
         changed |= attempt([](FuzzCase& c) { return reset(c.options, &Options::regularization_per_triangle); });
         changed |= attempt([](FuzzCase& c) { return reset(c.options, &Options::kept_pressures); });
@@ -116,6 +120,7 @@ private:
                 field(&Parameters::regularization);
                 field(&Parameters::time_step);
                 field(&Parameters::stepping);
+                field(&Parameters::enabled);
                 changed |=
                     attempt([&](FuzzCase& c) { return std::exchange(c.calls[k].parameters[n].sub_steps, 1) > 1; });
             }
