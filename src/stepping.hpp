@@ -8,7 +8,7 @@
 namespace apsl {
 
 /// Sub-steps that move on by a part of the time step, an equal one each; 0 where all correct at its end. Below 20
-/// sub-steps the parts are too long on fine meshes, and Stepping::automatic leaves the step whole.
+/// sub-steps the parts are long, so that solves must be tighter than usual: Stepping::automatic leaves the step whole.
 inline int walked_sub_steps(const Parameters& parameters) {
     constexpr int least = 20;
     const bool small = parameters.stepping == Stepping::small_steps ||

@@ -78,20 +78,31 @@ def size_rows(results, name):
     return rows
 
 
-def growth_row(results, target):
-    runs = [run for run in results["runs"] if is_ours(run["method"]) and held(run)]
+def growth_row(results, target, of="ours", chosen=is_ours):
+    runs = [run for run in results["runs"] if chosen(run["method"]) and held(run)]
     per_triangle = {}
     for size in sorted({run["triangles"] for run in runs}):
         at = time_at([run for run in runs if run["triangles"] == size], MEAN, target)
         if at is not None:
             per_triangle[size] = 1e3 * at / size
     text = ", ".join(f"{plain(size)}: {plain(value)} µs" for size, value in per_triangle.items())
-    return f"| time a triangle of ours to reach {shown(target)}, 2 k to 130 k triangles | grows by less than 2× | {text} |"
+    return f"| time a triangle of {of} to reach {shown(target)}, 2 k to 130 k triangles | grows by less than 2× | {text} |"
+
+
+def in_short(run):
+    """A run of ours by its sub-steps and α, others by all knobs."""
+    knobs = run["knobs"]
+    last, count = knobs.get("strain_limiting.regularization"), knobs.get("strain_limiting.sub_steps")
+    if not is_ours(run["method"]) or last is None or count is None:
+        return f"{run['title']}: {knobs_of(run)}"
+    first = knobs.get("strain_limiting.first_regularization")
+    alpha = f"{first:g} → {last:g}" if first else f"{last:g}"
+    return f"{run['title'].removeprefix('Area preserving').removeprefix(', ') or 'as the paper'}: {alpha}, {count}"
 
 
 def front_rows(results):
     """Every run of the study against the paper's setting on the same scene: errors, iterations, time as a ratio."""
-    rows = ["| | setting | mean | greatest | CG iterations a frame | time |", "|---|---|---|---|---|---|"]
+    rows = ["| | α, sub-steps | mean | greatest | CG iterations a frame | time |", "|---|---|---|---|---|---|"]
     for scene in dict.fromkeys(run["scene"] for run in results["runs"]):
         runs = [run for run in results["runs"] if run["scene"] == scene and held(run)]
         paper = next((run for run in runs if is_paper_setting(run)), None)
@@ -99,7 +110,7 @@ def front_rows(results):
             raise ChartError(f"{scene}: no run with the paper's setting")
         name = scene
         for run in [paper, *(run for run in runs if run is not paper and run["method"] != "none")]:
-            setting = "the paper's" if run is paper else f"{run['title']}: {knobs_of(run)}"
+            setting = "the paper's: 1.2, 10" if run is paper else in_short(run)
             iterations = run["cg_iterations_per_solve"] * run["solves"] / run["frames"] if run["solves"] else None
             rows.append(f"| {name} | {setting} | {shown(run[MEAN])} | {shown(run[GREATEST])} | "
                         f"{'' if iterations is None else round(iterations)} | "
@@ -116,7 +127,10 @@ def run(arguments):
     rows = ["| | asked | reached |", "|---|---|---|"]
     for file, name in (("curtain_8k", "8 k"), ("curtain_32k", "32 k")):
         rows += size_rows(read_results(options.folder / f"{file}.json"), name)
-    rows.append(growth_row(read_results(options.folder / "refinement.json"), options.target))
+    refinement = read_results(options.folder / "refinement.json")
+    for target in (options.target, 2.0 * options.target):
+        rows.append(growth_row(refinement, target))
+        rows.append(growth_row(refinement, target, "small steps alone", lambda method: method == "apsl_small_steps"))
     rows += ["", *front_rows(read_results(options.folder / "front.json"))]
     print("\n".join(rows))
 

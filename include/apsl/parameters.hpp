@@ -33,8 +33,8 @@ enum class Stepping : std::int32_t {
     whole_step = 1,  ///< Algorithm 1 as printed: every sub-step starts from x̃ + Δt ṽ and what was corrected so far
     /// All sub-steps but the last move on by an equal part of Δt, with velocities that hold the corrections so far, and
     /// correct there; the last only corrects (Macklin et al. 2019, docs/formulation.md). Needs 2 sub-steps, and pays
-    /// where a vertex moves less than about half an edge in each. CG stops at three times `tolerance`: what one solve
-    /// leaves, the next takes up.
+    /// where a vertex moves less than about half an edge in each; with fewer than 20, tolerance 0.03 or less. CG stops
+    /// at three times `tolerance`: what one solve leaves, the next takes up.
     small_steps = 2,
 };
 

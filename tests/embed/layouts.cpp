@@ -77,15 +77,6 @@ const Arrangement arrangements[] = {
      780},
 };
 
-Options with_layout(Options options, const Options& layout) {
-    options.position_stride = layout.position_stride;
-    options.velocity_stride = layout.velocity_stride;
-    options.position_component_stride = layout.position_component_stride;
-    options.velocity_component_stride = layout.velocity_component_stride;
-    options.inverse_mass_stride = layout.inverse_mass_stride;
-    return options;
-}
-
 /// `width` numbers a vertex, [width · V], to where the strides say.
 void place(std::vector<float>& floats, const std::vector<float>& numbers, std::size_t width, std::size_t offset,
            std::size_t stride, std::size_t component_stride) {

@@ -17,15 +17,6 @@ constexpr Options layouts[] = {
     {.position_stride = 1, .velocity_stride = 1, .position_component_stride = 700, .velocity_component_stride = 650},
     {.position_stride = 4, .velocity_stride = 5, .inverse_mass_stride = 2}};
 
-Options with_layout(Options options, const Options& layout) {
-    options.position_stride = layout.position_stride;
-    options.velocity_stride = layout.velocity_stride;
-    options.position_component_stride = layout.position_component_stride;
-    options.velocity_component_stride = layout.velocity_component_stride;
-    options.inverse_mass_stride = layout.inverse_mass_stride;
-    return options;
-}
-
 Owned<cl_mem> poisoned_buffer(std::size_t bytes) {
     std::vector<unsigned char> contents = poison<unsigned char>(bytes);
     cl_int status = CL_SUCCESS;

@@ -77,6 +77,15 @@ MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed) {
     return cloth;
 }
 
+Options with_layout(Options options, const Options& layout) {
+    options.position_stride = layout.position_stride;
+    options.velocity_stride = layout.velocity_stride;
+    options.position_component_stride = layout.position_component_stride;
+    options.velocity_component_stride = layout.velocity_component_stride;
+    options.inverse_mass_stride = layout.inverse_mass_stride;
+    return options;
+}
+
 CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options& the_options, std::size_t the_offset)
     : options(the_options),
       offset(the_offset),

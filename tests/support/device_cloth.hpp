@@ -27,6 +27,9 @@ struct MovingCloth {
 /// The mesh at rest where it lies, wavy now and about to be stretched by some 15 %: unequal masses, two pins.
 MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed);
 
+/// The options with the strides of `layout`.
+Options with_layout(Options options, const Options& layout);
+
 /// The caller's buffers of one or more cloths, guarded, and the filter run on them.
 struct CallerBuffers {
     /// `offset`: floats before the first element of every buffer. Layouts and per-triangle α from the options.

@@ -115,7 +115,7 @@ class Charts(unittest.TestCase):
         self.assertEqual((code, complained), (0, ""))
         # 10 sub-steps take 2 ms: 4 % with the paper's setting, 1 % with rising α, which has 4 % after 1 ms at most.
         self.assertIn("a third of 4 % | 1 %, 4 times less", said)
-        self.assertRegex(said, r"\| curtain \| the paper's \| 4 % \| .* \| 1\.00 \|")
+        self.assertRegex(said, r"\| curtain \| the paper's: 1\.2, 10 \| 4 % \| .* \| 1\.00 \|")
         # 4 % takes PBD edges 10 ms, ours at most 1 ms.
         runs = compare_results.read_results(self.folder / "curtain_8k.json")["runs"]
         held = [run for run in runs if run["method"] != "none" and compare_results.held(run)]
