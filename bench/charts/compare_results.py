@@ -14,7 +14,8 @@ RIVAL_COLOURS = ("#D55E00", "#009E73", "#CC79A7", "#E69F00", "#8c564b", "#6b6ecf
 RIVAL_MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">")
 OUR_COLOURS = ("#0072B2", "#56B4E9", "#003f6b", "#4a90c2", "#7fb3d5", "#1f4e79", "#9ecae1")
 OUR_MARKERS = ("o", "s", "D", "^", "v", "P", "X", "*")
-SMALL_STEPS_COLOUR = "#1a1aff"  # apart from the other blues: what the library does by default
+# Apart from the other blues: small steps, and what the library does by default.
+OWN_COLOURS = {"apsl_small_steps": "#1a1aff", "apsl_defaults": "#000000"}
 
 
 def results_parser(description, scene=False):
@@ -72,7 +73,7 @@ def styles(results):
         if method in table:
             continue
         if is_ours(method):
-            colour = SMALL_STEPS_COLOUR if method == "apsl_small_steps" else OUR_COLOURS[ours % len(OUR_COLOURS)]
+            colour = OWN_COLOURS.get(method, OUR_COLOURS[ours % len(OUR_COLOURS)])
             table[method] = (colour, OUR_MARKERS[ours % len(OUR_MARKERS)], 2.2)
             ours += 1
         else:
@@ -116,11 +117,15 @@ def title_of(results, scene):
 
 
 def legend_below(figure, handles, columns=4):
-    """A legend of {label: handle} under all axes, which make room for it."""
+    """A legend of {label: handle} under all axes, which make room for it; fewer columns where so many do not fit."""
+    legend = figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=columns, fontsize=8.5)
+    while columns > 1 and legend.get_window_extent(figure.canvas.get_renderer()).width > figure.bbox.width:
+        legend.remove()
+        columns -= 1
+        legend = figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=columns, fontsize=8.5)
     rows = -(-len(handles) // columns)
     room = (0.22 * rows + 0.1) / figure.get_size_inches()[1]
     figure.get_layout_engine().set(rect=(0.0, room, 1.0, 1.0 - room))
-    figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=columns, fontsize=8.5)
 
 
 def save_comparison(figure, axes, path, title=None):
