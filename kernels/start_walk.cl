@@ -11,7 +11,7 @@ APSL_KERNEL void start_walk(__global const apsl_cloth* cloths, __global const ap
                             __global const float* positions, ulong position_offset, __global const float* velocities,
                             ulong velocity_offset) {
     const uint c = (uint)get_group_id(1);
-    start_walking(cloths[c], parameters[c].walked > 0 && !states[c].stopped, parameters[c].time_step,
-                  parameters[c].walked, vertex_order, predicted, motion, correction, positions + position_offset,
-                  velocities + velocity_offset);
+    const int walked = walked_sub_steps(parameters[c]);
+    start_walking(cloths[c], walked > 0 && !states[c].stopped, parameters[c].time_step, walked, vertex_order, predicted,
+                  motion, correction, positions + position_offset, velocities + velocity_offset);
 }

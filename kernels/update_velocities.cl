@@ -13,6 +13,6 @@ APSL_KERNEL void update_velocities(__global const apsl_cloth* cloths, __global c
                                    __global const float* positions, ulong position_offset, __global float* velocities,
                                    ulong velocity_offset) {
     const uint c = (uint)get_group_id(1);
-    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, parameters[c].walked > 0, vertex_order,
-                      predicted, correction, positions + position_offset, velocities + velocity_offset);
+    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, walked_sub_steps(parameters[c]) > 0,
+                      vertex_order, predicted, correction, positions + position_offset, velocities + velocity_offset);
 }

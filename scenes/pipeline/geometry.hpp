@@ -20,6 +20,11 @@ inline Eigen::Map<Eigen::Vector3d> vector_at(std::span<double> values, std::size
     return Eigen::Map<Eigen::Vector3d>(values.data() + 3 * vertex);
 }
 
+/// m from positions in m, [3V].
+inline double edge_length(std::span<const double> positions, VertexPair edge) {
+    return (vector_at(positions, edge[1]) - vector_at(positions, edge[0])).norm();
+}
+
 /// m² from positions in m, [3V].
 inline double triangle_area(std::span<const double> positions, const Triangle& triangle) {
     const Eigen::Vector3d a = vector_at(positions, triangle[0]);

@@ -10,13 +10,11 @@
 namespace apsl::scenes {
 
 EdgeStretch edge_stretch(const ClothState& cloth) {
-    const std::span<const double> positions = cloth.positions;
-    const std::span<const double> rest_positions = cloth.rest_positions;
     EdgeStretch stretch{.min = std::numeric_limits<double>::infinity(), .max = 0.0};
-    for (const auto& [a, b] : cloth.topology->edges()) {
-        const double rest_length = (vector_at(rest_positions, b) - vector_at(rest_positions, a)).norm();
+    for (const VertexPair edge : cloth.topology->edges()) {
+        const double rest_length = edge_length(cloth.rest_positions, edge);
         if (rest_length > 0.0) {
-            const double ratio = (vector_at(positions, b) - vector_at(positions, a)).norm() / rest_length;
+            const double ratio = edge_length(cloth.positions, edge) / rest_length;
             stretch.min = std::min(stretch.min, ratio);
             stretch.max = std::max(stretch.max, ratio);
         }

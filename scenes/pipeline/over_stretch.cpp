@@ -11,10 +11,6 @@
 namespace apsl::scenes {
 namespace {
 
-double length(std::span<const double> positions, VertexPair edge) {
-    return (vector_at(positions, edge[1]) - vector_at(positions, edge[0])).norm();
-}
-
 bool is_pinned(const ClothState& cloth, std::uint32_t vertex) {
     return cloth.inverse_masses[vertex] == 0.0;
 }
@@ -50,8 +46,8 @@ void OverStretch::measure(const ClothState& cloth, int frame) {
     const Topology& topology = *cloth.topology;
     for (std::size_t e = 0; e < topology.edges().size(); ++e) {
         const VertexPair edge = topology.edges()[e];
-        const double rest_length = length(cloth.rest_positions, edge);
-        const double now = length(cloth.positions, edge);
+        const double rest_length = edge_length(cloth.rest_positions, edge);
+        const double now = edge_length(cloth.positions, edge);
         if (!(rest_length > 0.0 && now > kOverStretch * rest_length)) continue;
         greatest_.resize(topology.triangle_count());
         for (std::uint32_t c = topology.edge_corner_offsets()[e]; c < topology.edge_corner_offsets()[e + 1]; ++c) {

@@ -112,11 +112,11 @@ private:
     bool search_with_steps(int steps_per_frame, bool tune_regularization) {
         LimiterSettings given = given_;
         given.steps_per_frame = steps_per_frame;
-        std::vector<LimiterSettings> starts{given};
-        if (tune_regularization) {
-            starts.clear();
+        std::vector<LimiterSettings> starts;
+        if (tune_regularization)
             for (const Scheme& scheme : kSchemes) starts.push_back(with_scheme(given, scheme));
-        }
+        else
+            starts.push_back(given);
         auto place = static_cast<std::ptrdiff_t>(kSubSteps.size() / 2);
         for (LimiterSettings& settings : starts) {
             const auto misses = [&](std::ptrdiff_t at) {
