@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The atlas of failure: runs ours and the rivals over the maps and cases of bench/stability/maps.py and draws them into
 # docs/stability/. Whole results stay in build/stability.
-#   bench/stability.sh                  all; under half an hour on two cores that do nothing else
+#   bench/stability.sh                  all; half an hour on two cores that do nothing else
 #   bench/stability.sh needles ...      these
 #   bench/stability.sh --resume         all, without the runs that an interrupted call left in build/stability
 #   bench/stability.sh --ours           all, but the rivals' runs from build/stability: after a change of the library
@@ -27,9 +27,9 @@ if $measure; then
   cmake --build --preset dev --target apsl_program
   bench/stability/measure.py build/dev/apsl "$@" --keep "$keep" --every "$every" --work build/stability --out "$results"
 fi
-files=("$results"/*.json)
-[[ $# -gt 0 ]] && files=("${@/#/$results/}") && files=("${files[@]/%/.json}")
-for file in "${files[@]}"; do
-  bench/charts/stability_map.py "$file" --out "${file%.json}.png"
+maps=("$@")
+[[ $# -gt 0 ]] || mapfile -t maps < <(bench/stability/summary.py --names)
+for map in "${maps[@]}"; do
+  bench/charts/stability_map.py "$results/$map.json" --out "$results/$map.png"
 done
 echo "docs/stability.md quotes: bench/stability/summary.py $results"

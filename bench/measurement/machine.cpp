@@ -24,9 +24,14 @@ std::string output_of(const char* command) {
 }  // namespace
 
 std::string commit() {
-    const std::string description =
-        output_of("git -C '" APSL_SOURCE_DIRECTORY "' describe --always --abbrev=12 --dirty --exclude='*' 2>/dev/null");
-    return description.empty() ? "unknown" : description;
+    const std::string revision = output_of("git -C '" APSL_SOURCE_DIRECTORY "' rev-parse --short=12 HEAD 2>/dev/null");
+    if (revision.empty()) return "unknown";
+    // What is measured lies in docs/ and changes from the first file on.
+    const bool changed =
+        !output_of("git -C '" APSL_SOURCE_DIRECTORY
+                   "' status --porcelain --untracked-files=no -- ':/' ':(exclude,top)docs' 2>/dev/null")
+             .empty();
+    return changed ? revision + "-dirty" : revision;
 }
 
 std::string processor_name() {

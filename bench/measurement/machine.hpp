@@ -5,7 +5,7 @@
 
 namespace apsl::bench {
 
-/// The commit the sources stand at, "-dirty" behind it where files differ; "unknown" away from them.
+/// The commit the sources stand at, "-dirty" behind it where files outside docs/ differ; "unknown" away from them.
 std::string commit();
 
 /// As the operating system names it.

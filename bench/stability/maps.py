@@ -216,3 +216,6 @@ def cases():
 
 
 CASE_METHODS = WITHOUT + OURS + RIVALS + MORE_RIVALS
+
+CASES = "cases"  # the name under which they are stored together
+NAMES = [entry.name for entry in MAPS] + [CASES]

@@ -18,8 +18,6 @@ import maps
 import meshes
 import outcome
 
-CASES = "cases"
-
 
 def write_scene(scene, folder, name):
     """The scene file, its mesh beside it."""
@@ -40,7 +38,7 @@ def find_map(name, every):
 
 def columns_of(name, chosen):
     """Parts of a map or of the cases that are run by themselves: [(scenes by name of the point, methods)]."""
-    if name == CASES:
+    if name == maps.CASES:
         return [([(f"case_{row}", scene)], maps.CASE_METHODS) for row, (_, scene) in enumerate(maps.cases())]
     columns = []
     for x in chosen.x.values:
@@ -86,7 +84,7 @@ def condensed(name, chosen, results):
     names.sort(key=lambda name: 0 if name == "none" else 1 if name.startswith("apsl") else 2)
     document = {"map": name, "commit": first["runs"][0]["commit"], "machine": first["machine"],
                 "meaning": outcome.MEANING}
-    if name == CASES:
+    if name == maps.CASES:
         document["cases"] = [case for case, _ in maps.cases()]
         points = [[f"case_{row}"] for row in range(len(document["cases"]))]
     else:
@@ -124,7 +122,7 @@ def drop_ours(folder):
 
 
 def main():
-    known = [entry.name for entry in maps.MAPS] + [CASES]
+    known = maps.NAMES
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=Path)
     parser.add_argument("maps", nargs="*", metavar="MAP", help="of " + ", ".join(known) + "; all without")
@@ -140,7 +138,7 @@ def main():
         if name not in known:
             parser.error(f"{name}: no such map, expected one of {', '.join(known)}")
     options.out.mkdir(parents=True, exist_ok=True)
-    chosen = {name: None if name == CASES else find_map(name, options.every) for name in options.maps or known}
+    chosen = {name: None if name == maps.CASES else find_map(name, options.every) for name in options.maps or known}
     with ThreadPoolExecutor(options.jobs) as pool:
         futures = {}
         for name in chosen:

@@ -10,8 +10,6 @@ from pathlib import Path
 import maps
 import outcome
 
-CASES = "cases"
-
 
 def is_ours(method):
     return method["name"].startswith("apsl")
@@ -103,8 +101,7 @@ def listed(documents, find):
 
 
 def summary(folder):
-    names = [entry.name for entry in maps.MAPS] + [CASES]
-    documents = [json.loads((folder / f"{name}.json").read_text()) for name in names]
+    documents = [json.loads((folder / f"{name}.json").read_text()) for name in maps.NAMES]
     return "\n".join([*table(documents), "", "**A rival holds and ours does not:**", "",
                       *listed(documents, held_by_rivals_alone), "", "**Ours is worse than no limiter:**", "",
                       *listed(documents, worse_than_none)]) + "\n"
@@ -112,5 +109,8 @@ def summary(folder):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=Path, help="docs/stability")
-    print(summary(parser.parse_args().folder), end="")
+    wanted = parser.add_mutually_exclusive_group(required=True)
+    wanted.add_argument("folder", type=Path, nargs="?", help="docs/stability")
+    wanted.add_argument("--names", action="store_true", help="what the atlas consists of, a line each")
+    options = parser.parse_args()
+    print("\n".join(maps.NAMES) + "\n" if options.names else summary(options.folder), end="")

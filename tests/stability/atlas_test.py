@@ -63,7 +63,7 @@ class Atlas(unittest.TestCase):
     def test_there_is_one_outcome_for_every_point(self):
         others = {"long_run"}  # tests/stability/long_run.sh
         self.assertEqual({path.stem for path in DATA.glob("*.json")} - others,
-                         {m.name for m in maps.MAPS} | {measure.CASES})
+                         set(maps.NAMES))
         for chosen in maps.MAPS:
             document = read(chosen.name)
             self.assertLessEqual(len((DATA / f"{chosen.name}.json").read_bytes()), MOST_BYTES)
@@ -75,14 +75,14 @@ class Atlas(unittest.TestCase):
                     self.assertEqual([len(row) for row in method["outcome"]],
                                      len(document["y"]["values"]) * [len(document["x"]["values"])])
                     self.assertLessEqual(set("".join(method["outcome"])), set(outcome.MEANING))
-        cases = read(measure.CASES)
+        cases = read(maps.CASES)
         self.assertEqual(cases["cases"], [name for name, _ in maps.cases()])
         for method in cases["methods"]:
             self.assertEqual(len(method["outcome"]), len(cases["cases"]))
 
     def test_the_documentation_says_what_the_data_say(self):
         self.assertIn(summary.summary(DATA), (PROJECT / "docs/stability.md").read_text())
-        for name in [m.name for m in maps.MAPS] + [measure.CASES]:
+        for name in maps.NAMES:
             self.assertLessEqual((DATA / f"{name}.png").stat().st_size, 300_000)
 
     def run_again(self, chosen, method, x, y, folder):
