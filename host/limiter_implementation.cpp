@@ -5,7 +5,6 @@
 #include "limiter_options.hpp"
 #include "opencl_error.hpp"
 #include "program.hpp"
-#include "stepping.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -348,21 +347,23 @@ void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, const
     launch(commands, start_from_guess);
 }
 
-void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int sub_step, int max_iterations) const {
+void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, const CallBudget& budget,
+                                                int sub_step) const {
     const BufferHandle& pressure = pressures[std::min(static_cast<std::size_t>(sub_step), pressures.size() - 1)];
     use_pressures(pressure);
     launch(commands, assemble_gradients);
     launch_one_group(commands, begin_solve);
     if (assembled()) launch(commands, assemble_pressure_csr);
     if (options.kept_pressures > 0) queue_guess(commands, pressure);
-    const cl_int queued = queued_iterations(options, largest_cloth, max_iterations);
+    const cl_int queued =
+        finish_solve.handle ? queued_iterations(largest_cloth, budget, sub_step) : budget.max_iterations;
     for (cl_int k = 0; k < queued; ++k) {
         set_argument(apply_dot, assembled() ? 9 : 12, k);
         launch(commands, apply_dot);
         set_argument(cg_update, 9, k);
         launch(commands, cg_update);
     }
-    if (queued < max_iterations) {
+    if (queued < budget.max_iterations) {
         set_argument(finish_solve, 17, queued);
         launch_one_group(commands, finish_solve);
     }
@@ -371,23 +372,22 @@ void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, int s
     launch(commands, gather_displacements);
 }
 
-void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, int sub_steps, int max_iterations,
-                                                      bool walking) const {
+void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, const CallBudget& budget) const {
     launch(commands, predict_positions);
     launch(commands, order_triangle_values);
-    if (walking) {
+    if (budget.walks) {
         launch(commands, measure_area_change);
         launch_one_group(commands, begin_call);
         launch(commands, start_walk);
     }
-    for (cl_int sub_step = 0; sub_step < sub_steps; ++sub_step) {
+    for (cl_int sub_step = 0; sub_step < budget.sub_steps; ++sub_step) {
         set_argument(assemble_gradients, 11, sub_step);
         set_argument(begin_solve, 5, sub_step);
-        queue_solve(commands, sub_step, max_iterations);
+        queue_solve(commands, budget, sub_step);
     }
     launch(commands, measure_area_change);
     launch_one_group(commands, end_call);
-    if (sub_steps > 0) launch(commands, update_velocities);
+    if (budget.sub_steps > 0) launch(commands, update_velocities);
 }
 
 cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Buffers& buffers,
@@ -396,16 +396,13 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
     if (given.size() != 1 && given.size() != cloth_count)
         invalid(std::to_string(given.size()) + " parameters given for " + std::to_string(cloth_count) +
                 " cloths, expected one for each or a single one");
-    int sub_steps = 0, max_iterations = 1;
-    bool walking = false;
+    CallBudget budget;
     for (const Parameters& p : given) {
         validate(p);
         if (!p.enabled) continue;
-        sub_steps = std::max(sub_steps, p.sub_steps);
-        max_iterations = std::max(max_iterations, p.max_iterations);
         if (options.positions_only && p.stepping == Stepping::small_steps)
             invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
-        walking = walking || walked_sub_steps(as_run(p)) > 0;
+        budget.add(as_run(p));
     }
     check_buffers(buffers);
     bind(buffers);
@@ -415,7 +412,7 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
     if (one_group())
         launch_one_group(commands, filter_in_one_group);
     else
-        queue_many_groups(commands, sub_steps, max_iterations, walking);
+        queue_many_groups(commands, budget);
     return commands.end();
 }
 

@@ -7,6 +7,7 @@
 #include "kernel_launch.hpp"
 #include "limiter_plan.hpp"
 #include "program_binary.hpp"
+#include "queued_iterations.hpp"
 
 #include <apsl/strain_limiter.hpp>
 
@@ -96,8 +97,8 @@ private:
     void queue_parameters(host::CommandSequence& commands, std::span<const Parameters> given) const;
     void use_pressures(const host::BufferHandle& pressure) const;
     void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;
-    void queue_solve(host::CommandSequence& commands, int sub_step, int max_iterations) const;
-    void queue_many_groups(host::CommandSequence& commands, int sub_steps, int max_iterations, bool walking) const;
+    void queue_solve(host::CommandSequence& commands, const host::CallBudget& budget, int sub_step) const;
+    void queue_many_groups(host::CommandSequence& commands, const host::CallBudget& budget) const;
 
     void launch(host::CommandSequence& commands, const host::Kernel& kernel) const {
         commands.launch(kernel, groups, options.work_group_size, cloth_count);

@@ -17,11 +17,6 @@ std::size_t one_group_triangles(const DeviceFacts& facts) {
     return facts.is_cpu && facts.compute_units > 1 ? least * facts.compute_units / (facts.compute_units - 1) : least;
 }
 
-// Above this many a launch costs nothing beside its work, and a solve finished by one group would be slow.
-constexpr std::size_t finish_triangles = 65536;
-// Enough for α = 1.2 at tolerance 0.1, which takes three to five; even, so that residuals end in the even slot.
-constexpr int usual_iterations = 8;
-
 [[noreturn]] void invalid(const std::string& what) {
     throw Error(ErrorCode::invalid_argument, what);
 }
@@ -162,11 +157,6 @@ std::uint32_t group_count(const DeviceFacts& facts, const Options& options, std:
     // A group that has less to do than this costs more to start than it saves.
     const std::uint32_t least_share = std::max(options.work_group_size, 256u);
     return std::clamp((largest + least_share - 1) / least_share, 1u, facts.compute_units * 8);
-}
-
-int queued_iterations(const Options& options, std::size_t largest, int max_iterations) {
-    if (!matrix_free_consistent(options) || largest > finish_triangles) return max_iterations;
-    return std::min(max_iterations, usual_iterations);
 }
 
 }  // namespace apsl::host

@@ -41,8 +41,4 @@ std::uint32_t patch_triangles(const DeviceFacts& facts, const Options& options, 
 /// load, few enough that every group can sum all groups' partial results itself. 1 with Execution::one_group.
 std::uint32_t group_count(const DeviceFacts& facts, const Options& options, std::uint32_t largest);
 
-/// CG iterations of a solve that are queued as launches over the whole device. What is left of max_iterations is one
-/// launch of finish_solve where the options allow it: cheap while cloths are small, and seldom more than a formality.
-int queued_iterations(const Options& options, std::size_t largest, int max_iterations);
-
 }  // namespace apsl::host

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // α of a solve: scheduled over the sub-steps, and adaptive (Section 4): raised where CG fails or takes too many
-// iterations, restored where it takes few. Reference: apsl::reference, scheduled_regularization and
+// iterations, restored where it takes few. Reference: scheduled_regularization and apsl::reference,
 // adaptive_regularization.
 #ifndef APSL_REGULARIZATION_H
 #define APSL_REGULARIZATION_H

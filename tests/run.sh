@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sets up a Debian 12 machine, builds everything with warnings as errors, and runs all tests: on pocl, on a checker, on a
-# second OpenCL implementation; the fuzzers, and threads under a sanitizer. Fails without an OpenCL device.
+# second OpenCL implementation, under sanitizers; and the fuzzers. Fails without an OpenCL device.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,8 +16,14 @@ cmake --preset fuzz
 cmake --build --preset fuzz
 ctest --preset fuzz -j "$(nproc)"
 
-# Limiters in several threads under the thread sanitizer. AddressSanitizer takes longer than all of this and is a command
-# of its own: cmake --preset asan && cmake --build --preset asan && ctest --preset asan
+# The library's host code under the address, leak and undefined-behaviour sanitizers. The whole suite under them takes
+# longer than all of this and is a command of its own:
+#   cmake --preset asan && cmake --build --preset asan && ctest --preset asan
+cmake --preset asan
+cmake --build --preset asan-library
+ctest --preset asan-library -j "$(nproc)"
+
+# Limiters in several threads under the thread sanitizer.
 cmake --preset tsan
 cmake --build --preset tsan
 ctest --preset tsan -j "$(nproc)"

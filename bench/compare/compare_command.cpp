@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <list>
 #include <utility>
 
 namespace apsl::compare {
@@ -51,6 +50,7 @@ Study assemble_study(const CompareOptions& options) {
         if (!options.deviation_frames.empty()) study.deviation->frames = options.deviation_frames;
     }
     if (options.run_seconds) study.run_seconds = options.run_seconds;
+    if (options.rounds) study.rounds = *options.rounds;
     return study;
 }
 
@@ -58,7 +58,7 @@ bool has_stretch_springs(const SceneCase& scene) {
     return scene.document.contains("integrator") && scene.document["integrator"].contains("implicit_springs");
 }
 
-void plan(const SceneCase& scene, const Contender& contender, const KnobValues& knobs, std::list<PlannedRun>& runs) {
+void plan(const SceneCase& scene, const Contender& contender, const KnobValues& knobs, std::vector<PlannedRun>& runs) {
     PlannedRun run{&scene, &contender, prepare_scene(contender, scene.document, scene.file, knobs)};
     // Values of knobs that a scene does not take, such as a tolerance of 2, should be known before anything runs.
     (void)scenes::parse_scene(run.prepared.document, scene.file + ", " + contender.name);
@@ -69,8 +69,8 @@ void plan(const SceneCase& scene, const Contender& contender, const KnobValues& 
     if (!known) runs.push_back(std::move(run));
 }
 
-std::list<PlannedRun> plan_runs(const Study& study) {
-    std::list<PlannedRun> runs;
+std::vector<PlannedRun> plan_runs(const Study& study) {
+    std::vector<PlannedRun> runs;
     for (const SceneCase& scene : study.scenes) {
         for (const auto& [contender, all_knobs] : study.methods) {
             if (contender->kind == ContenderKind::springs && !has_stretch_springs(scene)) {
@@ -158,7 +158,7 @@ std::optional<double> device_seconds(const PlannedRun& run, RunConditions condit
 
 int compare_command(const CompareOptions& options) {
     const Study study = assemble_study(options);
-    const std::list<PlannedRun> runs = plan_runs(study);
+    const std::vector<PlannedRun> runs = plan_runs(study);
     RunConditions conditions{.device = {}, .converged = nullptr, .show = {}};
     if (std::any_of(runs.begin(), runs.end(),
                     [](const PlannedRun& run) { return run.contender->kind == ContenderKind::ours; })) {
@@ -174,10 +174,11 @@ int compare_command(const CompareOptions& options) {
 
     scenes::note_interruptions();
     Converged converged(options);
-    std::size_t number = 0;
+    const std::size_t count = runs.size() * static_cast<std::size_t>(study.rounds);
     std::size_t skipped = 0;
-    for (const PlannedRun& run : runs) {
-        ++number;
+    for (std::size_t number = 1; number <= count; ++number) {
+        const PlannedRun& run = runs[(number - 1) % runs.size()];
+        conditions.round = 1 + static_cast<int>((number - 1) / runs.size());
         const std::optional<DeviationPlan> deviation = deviation_plan(study, *run.scene);
         conditions.profile = options.profile;
         if (results.has(run, conditions, deviation)) {
@@ -203,14 +204,14 @@ int compare_command(const CompareOptions& options) {
         }
         if (!measured || scenes::interrupted()) {
             std::fprintf(stderr, "interrupted before run %zu of %zu was done; the runs before it are in %s\n", number,
-                         runs.size(), options.out.string().c_str());
+                         count, options.out.string().c_str());
             return scenes::kExitInterrupted;
         }
-        tell(number, runs.size(), run, results.add(run, *measured, conditions, deviation, on_device));
+        tell(number, count, run, results.add(run, *measured, conditions, deviation, on_device));
         results.write();
     }
     results.write();
-    std::printf("%s: %zu runs, %zu of them done before\n", options.out.string().c_str(), runs.size(), skipped);
+    std::printf("%s: %zu runs, %zu of them done before\n", options.out.string().c_str(), count, skipped);
     return scenes::kExitDone;
 }
 

@@ -18,6 +18,7 @@ struct CompareOptions {
     bool measure_deviation = false;
     std::vector<int> deviation_frames;
     std::optional<double> run_seconds;
+    std::optional<int> rounds;
     bool profile = false;
     std::filesystem::path out;
 };

@@ -26,6 +26,7 @@ struct PlannedRun {
 struct RunConditions {
     std::optional<scenes::OpenClDevice> device;  ///< for ContenderKind::ours
     double run_seconds = 120.0;                  ///< no frame is begun after so long, set-up apart
+    int round = 1;                               ///< 2 for the second time that all runs are made, and so on
     bool keep_frames = false;                    ///< the greatest area change of every frame in the results
     bool profile = false;                        ///< device times: a run whose times are not to be compared
     const ConvergedSolution* converged = nullptr;

@@ -22,6 +22,24 @@ Json quartiles_json(const std::vector<double>& samples) {
     return {{"first_quartile", q.first}, {"median", q.median}, {"third_quartile", q.third}};
 }
 
+// The times of a run by rounds; what was made once has none listed.
+Json rounds_of(const Json& entry) {
+    if (entry.contains("rounds")) return entry["rounds"];
+    Json only = entry.at("limiter_seconds_per_frame");
+    only["commit"] = entry.at("commit");
+    return Json::array({only});
+}
+
+Json medians_over(const Json& rounds) {
+    Json medians;
+    for (const char* name : {"first_quartile", "median", "third_quartile"}) {
+        std::vector<double> samples;
+        for (const Json& round : rounds) samples.push_back(round.at(name).get<double>());
+        medians[name] = bench::quartiles(samples).median;
+    }
+    return medians;
+}
+
 std::vector<double> seconds(const MeasuredRun& run, double scenes::FrameReport::* field, double less = 0.0) {
     std::vector<double> samples;
     for (const scenes::FrameReport& frame : run.frames) samples.push_back(frame.*field - less);
@@ -147,7 +165,7 @@ const Json* ResultsFile::find(const std::string& scene, const std::string& metho
 bool ResultsFile::has(const PlannedRun& run, const RunConditions& conditions,
                       const std::optional<DeviationPlan>& deviation) const {
     const Json* found = find(run.scene->name, run.contender->name, run.prepared.knobs);
-    if (found == nullptr) return false;
+    if (found == nullptr || rounds_of(*found).size() < static_cast<std::size_t>(conditions.round)) return false;
     if (found->value("status", "") == "timed_out" && found->value("run_seconds", 0.0) < conditions.run_seconds) {
         return false;
     }
@@ -215,7 +233,14 @@ Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const 
         }
     }
     for (Json& earlier : document_["runs"]) {
-        if (&earlier == find(run.scene->name, run.contender->name, run.prepared.knobs)) return earlier = entry;
+        if (&earlier != find(run.scene->name, run.contender->name, run.prepared.knobs)) continue;
+        if (conditions.round > 1) {
+            Json rounds = rounds_of(earlier);
+            rounds.push_back(rounds_of(entry)[0]);
+            entry["limiter_seconds_per_frame"] = medians_over(rounds);
+            entry["rounds"] = rounds;
+        }
+        return earlier = entry;
     }
     document_["runs"].push_back(entry);
     return entry;

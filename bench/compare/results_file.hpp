@@ -28,12 +28,13 @@ public:
     /// Throws InputError where the file has a scene of this name with other settings.
     void add_scene(const SceneCase& scene);
 
-    /// Whether the run is there already, with all that is asked for. One that was timed out counts unless it may now
-    /// take longer.
+    /// Whether the run is there already, with all that is asked for, as often as RunConditions::round says. One that was
+    /// timed out counts unless it may now take longer.
     bool has(const PlannedRun& run, const RunConditions& conditions,
              const std::optional<DeviationPlan>& deviation) const;
 
-    /// In the place of an earlier one with the same settings. `device_seconds`: a frame, of a profiled run.
+    /// In the place of an earlier one with the same settings, whose times it keeps from the second round on.
+    /// `device_seconds`: a frame, of a profiled run.
     /// Returns the entry.
     nlohmann::ordered_json add(const PlannedRun& run, const MeasuredRun& measured, const RunConditions& conditions,
                                const std::optional<DeviationPlan>& deviation, std::optional<double> device_seconds);

@@ -19,6 +19,7 @@ using scenes::SceneObject;
 using scenes::SceneValue;
 
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t kMaxRounds = 1000;
 
 SceneCase as_case(std::string name, const std::filesystem::path& file, nlohmann::json document) {
     (void)scenes::parse_scene(document, file.string());  // wrong values should be known before anything runs
@@ -122,6 +123,7 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
     if (object.has("run_seconds")) {
         study.run_seconds = object.find("run_seconds").number(Range::above(0.0));
     }
+    study.rounds = static_cast<int>(object.integer("rounds", study.rounds, 1, kMaxRounds));
     if (const SceneValue keep = object.find("keep_frames"); keep.json != nullptr) {
         if (!keep.json->is_boolean()) keep.expected("true or false");
         study.keep_frames = keep.json->get<bool>();

@@ -29,6 +29,7 @@ struct Study {
     std::vector<ContenderRuns> methods;
     std::optional<DeviationSettings> deviation;
     std::optional<double> run_seconds;
+    int rounds = 1;  ///< times that all runs are made, in turn
     bool keep_frames = false;
 };
 

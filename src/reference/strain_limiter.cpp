@@ -9,8 +9,8 @@
 #include "reference/displacements.hpp"
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
-#include "reference/scheduled_regularization.hpp"
 
+#include "scheduled_regularization.hpp"
 #include "stepping.hpp"
 
 #include <apsl/error.hpp>

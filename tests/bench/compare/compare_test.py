@@ -92,6 +92,23 @@ class Compare(unittest.TestCase):
         self.assertIn("holds a scene flag with other settings", done.stderr)
         self.assertEqual(self.out.read_bytes(), before)
 
+    def test_times_are_medians_over_the_rounds(self):
+        arguments = [self.flag, "--methods", "none,apsl", "--frames", 3, "--set", "mesh.grid.vertices=[4,4]",
+                     "--set", "pins.0.vertices=[0,3]", "--out", self.out]
+        self.compare(*arguments)
+        first = self.results()["runs"]
+        self.assertNotIn("rounds", first[0])
+        done = self.compare(*arguments, "--rounds", 3)
+        self.assertIn(f"{3 * len(first)} runs, {len(first)} of them done before", done.stdout)
+        for before, after in zip(first, self.results()["runs"], strict=True):
+            self.assertEqual(before["knobs"], after["knobs"])
+            self.assertEqual(before["max_area_change"], after["max_area_change"])
+            self.assertEqual(len(after["rounds"]), 3)
+            self.assertEqual(after["rounds"][0], {**before["limiter_seconds_per_frame"], "commit": before["commit"]})
+            for name, value in after["limiter_seconds_per_frame"].items():
+                self.assertEqual(value, sorted(entry[name] for entry in after["rounds"])[1])
+        self.assertIn(f"{3 * len(first)} of them done before", self.compare(*arguments, "--rounds", 3).stdout)
+
     def test_an_interruption_keeps_what_is_finished(self):
         study = self.write("study.json", {
             "scenes": [{"file": "flag.json"}, {"file": "flag.json", "name": "endless", "set": {"frames": 1000000}}],
@@ -166,7 +183,7 @@ class Compare(unittest.TestCase):
         full = {"scenes": [{"file": "flag.json", "name": "a", "set": {"density": 0.3}}],
                 "methods": ["none", {"name": "springs", "knobs": {"stretch_stiffness_factor": [1, 2]}}],
                 "deviation": {"frames": [1], "step_factor": 1, "sub_steps": 5, "regularization": 1.1,
-                              "tolerance": 0.01, "target_area_change": 0.01}, "run_seconds": 60}
+                              "tolerance": 0.01, "target_area_change": 0.01}, "run_seconds": 60, "rounds": 2}
         jsonschema.validate(full, STUDY_SCHEMA)
         self.compare("--study", self.write("study.json", full), "--out", self.out)
         for path in ((), ("scenes", 0), ("methods", 1), ("deviation",)):

@@ -22,7 +22,7 @@ TEST_CASE("a study names scenes with changes, methods with knobs, and conditions
         "scenes": [{"file": "flag.json"}, {"file": "flag.json", "name": "heavy", "set": {"density": 2, "frames": 5}}],
         "methods": ["none", {"name": "apsl", "knobs": {"strain_limiting.sub_steps": [1, 2], "steps_per_frame": 3}}],
         "deviation": {"frames": [4], "step_factor": 2},
-        "run_seconds": 7})");
+        "run_seconds": 7, "rounds": 3})");
     const Study study = read_study(file, {"frames=6"});
     REQUIRE(study.scenes.size() == 2);
     CHECK(study.scenes[0].name == "flag");
@@ -35,6 +35,7 @@ TEST_CASE("a study names scenes with changes, methods with knobs, and conditions
     CHECK(study.deviation->frames == std::vector<int>{4});
     CHECK(study.deviation->converged.step_factor == 2);
     CHECK(study.run_seconds == 7.0);
+    CHECK(study.rounds == 3);
 }
 
 TEST_CASE("what is wrong in a study is named with its place") {
@@ -54,5 +55,6 @@ TEST_CASE("what is wrong in a study is named with its place") {
             "methods[1].knobs: apsl: unknown knob");
     refused(R"({"methods": ["wishing"]})", "unknown method \"wishing\"");
     refused(R"({"deviation": {"frames": [-1]}})", "deviation.frames[0]: expected a whole number");
+    refused(R"({"rounds": 0})", "rounds: expected a whole number from 1 to 1000");
     refused(R"({"run_seconds": 0})", "run_seconds: expected a number > 0");
 }

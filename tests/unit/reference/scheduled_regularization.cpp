@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "reference/scheduled_regularization.hpp"
+#include "scheduled_regularization.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace apsl;
-using namespace apsl::reference;
 
 TEST_CASE("scheduled alpha: geometric in alpha - 1, from the first sub-step to the last") {
     Parameters rising{.regularization = 1.5f, .sub_steps = 3, .first_regularization = 1.125f};

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace apsl::reference {
+namespace apsl {
 
 /// α of sub-step k of n (Parameters::first_regularization), of which `alpha` is that of the last: α − 1 times
 /// ρ^((n − 1 − k) / (n − 1)), ρ being (α − 1) of the first sub-step over that of the last. A single sub-step is the
@@ -20,4 +20,4 @@ Real scheduled_regularization(Real alpha, const Parameters& parameters, int sub_
     return Real(1) + (alpha - Real(1)) * std::pow(ratio, part);
 }
 
-}  // namespace apsl::reference
+}  // namespace apsl

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <apsl/parameters.hpp>
+
+#include <cstddef>
+#include <limits>
+
+namespace apsl::host {
+
+/// What a call may take at most, over the parameters of all its cloths that are on.
+struct CallBudget {
+    int sub_steps = 0;
+    int max_iterations = 1;
+    bool walks = false;  ///< a cloth takes small steps
+    // The least of any: what makes for the longest solves.
+    float first_regularization = std::numeric_limits<float>::infinity();
+    float regularization = std::numeric_limits<float>::infinity();
+    float tolerance = std::numeric_limits<float>::infinity();  ///< as solve_tolerance() has it
+
+    void add(const Parameters& parameters);
+};
+
+/// CG iterations of a solve in sub-step `sub_step` that are queued as launches over the whole device, where the largest
+/// cloth has `largest` triangles. What is left of max_iterations is one launch of finish_solve, by one work-group a
+/// cloth: seldom more than a formality.
+int queued_iterations(std::size_t largest, const CallBudget& budget, int sub_step);
+
+}  // namespace apsl::host
