@@ -24,8 +24,9 @@ void add_extra_commands(CLI::App& program, std::function<int()>& chosen) {
     command->add_option("--deviation-frames", options->deviation_frames, "a,b,... instead of the ten")->delimiter(',');
     command->add_option("--run-seconds", options->run_seconds, "no frame of a run begins after so long; default 120")
         ->check(CLI::PositiveNumber.description(""));
-    command->add_option("--rounds", options->rounds,
-                        "make all runs so often, in turn; times are medians over the rounds; default 1")
+    command
+        ->add_option("--rounds", options->rounds,
+                     "make all runs so often, in turn; times are medians over the rounds; default 1")
         ->check(CLI::Range(1, 1000).description(""));
     command->add_flag("--profile", options->profile,
                       "run ours a second time for its time on the device, transfers apart");

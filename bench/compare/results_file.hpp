@@ -28,8 +28,8 @@ public:
     /// Throws InputError where the file has a scene of this name with other settings.
     void add_scene(const SceneCase& scene);
 
-    /// Whether the run is there already, with all that is asked for, as often as RunConditions::round says. One that was
-    /// timed out counts unless it may now take longer.
+    /// Whether the run is there already, with all that is asked for, as often as RunConditions::round says. One that
+    /// was timed out counts unless it may now take longer.
     bool has(const PlannedRun& run, const RunConditions& conditions,
              const std::optional<DeviationPlan>& deviation) const;
 
