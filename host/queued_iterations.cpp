@@ -15,9 +15,9 @@ constexpr std::size_t large_cloth = 65536;
 // Even, so that residuals end in the even slot, as finish_solve expects them.
 constexpr int least_queued = 8;
 
-// Iterations that bring r̄ below tolerance · b̄ (Saad 2003, Iterative Methods for Sparse Linear Systems, Eq. 6.128, with
-// the root of the condition number for the change of norm), no eigenvalue of J̄J̄ᵀ being above 3/α: the scaled gradients
-// around a vertex in a flat ring of equal triangles have none above 1/α, and a triangle has three vertices.
+// Iterations that bring r̄ below tolerance · b̄ (Saad 2003, Iterative Methods for Sparse Linear Systems, Section 6.11.3,
+// with the root of the condition number for the change of norm), no eigenvalue of J̄J̄ᵀ being above 3/α: the scaled
+// gradients around a vertex in a flat ring of equal triangles have none above 1/α, and a triangle has three vertices.
 double iteration_bound(double alpha, double tolerance) {
     const double root = std::sqrt((alpha + 2.0) / (alpha - 1.0));  // of the condition number
     return 0.5 * root * std::log(2.0 * root / tolerance);
@@ -42,7 +42,7 @@ int queued_iterations(std::size_t largest, const CallBudget& budget, int sub_ste
                              .sub_steps = budget.sub_steps,
                              .first_regularization = budget.first_regularization};
     const double alpha = scheduled_regularization(double{budget.regularization}, hardest, sub_step);
-    // Solves take a third to a half of the bound. A large cloth is never worth the risk.
+    // Solves take a third to a half of the bound. On a large cloth one work-group alone would be slow: all of it.
     const double likely = iteration_bound(alpha, budget.tolerance) * (largest > large_cloth ? 1.0 : 0.5);
     const double most = budget.max_iterations;
     const double even = 2.0 * std::ceil(0.5 * std::min(likely, most));

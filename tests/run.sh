@@ -16,9 +16,8 @@ cmake --preset fuzz
 cmake --build --preset fuzz
 ctest --preset fuzz -j "$(nproc)"
 
-# The library's host code under the address, leak and undefined-behaviour sanitizers. The whole suite under them takes
-# longer than all of this and is a command of its own:
-#   cmake --preset asan && cmake --build --preset asan && ctest --preset asan
+# The library's host code under the address, leak and undefined-behaviour sanitizers. The whole suite under them is a
+# command of its own: cmake --preset asan && cmake --build --preset asan && ctest --preset asan
 cmake --preset asan
 cmake --build --preset asan-library
 ctest --preset asan-library -j "$(nproc)"

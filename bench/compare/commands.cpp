@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "compare/compare_command.hpp"
+#include "compare/study.hpp"
 #include "run/extra_commands.hpp"
 
 #include <CLI/CLI.hpp>
@@ -27,7 +28,7 @@ void add_extra_commands(CLI::App& program, std::function<int()>& chosen) {
     command
         ->add_option("--rounds", options->rounds,
                      "make all runs so often, in turn; times are medians over the rounds; default 1")
-        ->check(CLI::Range(1, 1000).description(""));
+        ->check(CLI::Range(1, compare::kMaxRounds).description(""));
     command->add_flag("--profile", options->profile,
                       "run ours a second time for its time on the device, transfers apart");
     command->add_option("--out", options->out, "results, JSON; runs that are in it are not made again")->required();

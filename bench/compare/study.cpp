@@ -19,7 +19,6 @@ using scenes::SceneObject;
 using scenes::SceneValue;
 
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
-constexpr std::int64_t kMaxRounds = 1000;
 
 SceneCase as_case(std::string name, const std::filesystem::path& file, nlohmann::json document) {
     (void)scenes::parse_scene(document, file.string());  // wrong values should be known before anything runs

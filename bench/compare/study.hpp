@@ -23,6 +23,9 @@ struct DeviationSettings {
     ConvergedSettings converged;
 };
 
+/// Of Study::rounds.
+constexpr int kMaxRounds = 1000;
+
 /// What is to be compared: docs/study.schema.json.
 struct Study {
     std::vector<SceneCase> scenes;
