@@ -21,7 +21,6 @@ ctest --preset fuzz -j "$(nproc)"
 cmake --preset asan
 cmake --build --preset asan-library
 ctest --preset asan-library -j "$(nproc)"
-ctest --preset asan-leaks -j "$(nproc)"
 
 # Limiters in several threads under the thread sanitizer.
 cmake --preset tsan

@@ -42,7 +42,7 @@ OCLGRIND_RACES = oclgrind("Oclgrind, races", "apsl_kernel_tests", "kernels", "[e
 OCLGRIND_VALUES = oclgrind("Oclgrind, uninitialised values", "apsl_kernel_tests", "kernels",
                            "gather_displacements: keeps the greatest residual*", "1")
 ASAN_EMBED = ctest("AddressSanitizer", "asan-library", "apsl_embed_tests", "apsl_embed_tests: ?the C interface does")
-LEAKS_EMBED = ctest("LeakSanitizer", "asan-leaks", "apsl_embed_tests", "apsl_embed_tests: ?the C interface: every")
+LEAKS_EMBED = ctest("LeakSanitizer", "asan-library", "apsl_embed_tests", "apsl_embed_tests: ?the C interface: every")
 UBSAN_EMBED = ctest("UndefinedBehaviorSanitizer", "asan-library", "apsl_embed_tests", "apsl_embed_tests: ?scratch_bytes")
 TSAN = ctest("ThreadSanitizer", "tsan", "apsl_thread_tests", "apsl_thread_tests: ?the C interface")
 
