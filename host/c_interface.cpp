@@ -23,6 +23,7 @@ static_assert(static_cast<int>(apsl::Status::diverged) == APSL_LIMITER_DIVERGED)
 static_assert(static_cast<int>(apsl::Status::off) == APSL_LIMITER_OFF);
 static_assert(static_cast<int>(apsl::Offender::triangle) == APSL_OFFENDER_TRIANGLE);
 static_assert(static_cast<int>(apsl::Stepping::small_steps) == APSL_STEPPING_SMALL_STEPS);
+static_assert(static_cast<int>(apsl::Solver::chebyshev) == APSL_SOLVER_CHEBYSHEV);
 static_assert(static_cast<int>(apsl::ErrorCode::unsupported) == APSL_ERROR_UNSUPPORTED);
 static_assert(static_cast<int>(apsl::Matrix::printed) == APSL_MATRIX_PRINTED);
 static_assert(static_cast<int>(apsl::Apply::matrix_free) == APSL_APPLY_MATRIX_FREE);
@@ -96,7 +97,9 @@ apsl::Options options_from(const apsl_limiter_options* options) {
             .inverse_mass_stride = o.inverse_mass_stride,
             .positions_only = o.positions_only != 0,
             .regularization_per_triangle = o.regularization_per_triangle != 0,
-            .kept_pressures = o.kept_pressures};
+            .kept_pressures = o.kept_pressures,
+            .solver = static_cast<apsl::Solver>(o.solver),
+            .bound_period = o.bound_period};
 }
 
 apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
@@ -166,6 +169,8 @@ apsl_limiter_options apsl_limiter_default_options(void) {
             o.positions_only,
             o.regularization_per_triangle,
             o.kept_pressures,
+            static_cast<int32_t>(o.solver),
+            o.bound_period,
             {}};
 }
 

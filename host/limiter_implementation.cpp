@@ -158,7 +158,9 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     if (assembled()) values = buffer(adjacency.columns.size() * sizeof(float));
 
     ordered_rest_areas = zeroed_buffer(triangle_count);
-    ordered_regularization = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
+    const bool regularized = options.regularization_per_triangle || by_chebyshev();
+    ordered_regularization = upload(std::vector<float>(regularized ? triangle_count : 1, 1.0f));
+    if (by_chebyshev()) vertex_bound = buffer(vertex_count * sizeof(float));
     predicted = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
     const std::size_t walking_vertices = options.positions_only ? 1 : vertex_count;
     motion = buffer(walking_vertices * sizeof(cl_float4));
@@ -166,9 +168,11 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     gradients = buffer(triangle_count * gradient_bytes);
     residual = zeroed_buffer(triangle_count);
     damped_diagonal = zeroed_buffer(triangle_count);
-    product = zeroed_buffer(triangle_count);
     direction = buffer(triangle_count * sizeof(float));
-    direction_product = buffer(triangle_count * sizeof(float));
+    if (!by_chebyshev()) {
+        product = zeroed_buffer(triangle_count);
+        direction_product = buffer(triangle_count * sizeof(float));
+    }
     if (one_group()) {
         pressures.push_back(zeroed_buffer(triangle_count * std::size_t{1 + options.kept_pressures}));
     } else {
@@ -213,22 +217,41 @@ void StrainLimiter::Implementation::create_kernels() {
     end_call = kernel("end_call");
     set_arguments(end_call, 0, cloths, states, stats, partials, vertex_order, triangle_order, triangles, predicted,
                   ordered_rest_areas, groups);
-    create_apply_kernels();
-    cg_update = kernel("cg_update");
-    set_arguments(cg_update, 0, cloths, states, partials, residual, damped_diagonal, product, direction,
-                  direction_product);
     gather_displacements = kernel("gather_displacements");
     set_arguments(gather_displacements, 0, cloths, parameters, states, stats, partials, corner_offsets, corners,
                   gradients);
     set_arguments(gather_displacements, 9, predicted, motion, correction);
-    if (options.kept_pressures > 0) {
-        measure_guess = kernel("measure_guess");
-        set_arguments(measure_guess, 0, cloths, states, partials, residual);
-        start_from_guess = kernel("start_from_guess");
-        set_arguments(start_from_guess, 0, cloths, states, partials, residual, damped_diagonal, product);
-    }
     update_velocities = kernel("update_velocities");
     set_arguments(update_velocities, 0, cloths, parameters, states, vertex_order, predicted, correction);
+    if (by_chebyshev())
+        create_chebyshev();
+    else
+        create_conjugate_gradient();
+}
+
+void StrainLimiter::Implementation::create_chebyshev() {
+    const auto kernel = [&](const char* name) { return create_kernel(program.get(), name); };
+    bound_vertices = kernel("bound_vertices");
+    set_arguments(bound_vertices, 0, cloths, states, corner_offsets, corners, gradients, damped_diagonal, vertex_bound);
+    bound_triangles = kernel("bound_triangles");
+    set_arguments(bound_triangles, 0, cloths, states, triangles, damped_diagonal, vertex_bound, ordered_regularization);
+    chebyshev_step = kernel("chebyshev_step");
+    set_arguments(chebyshev_step, 0, cloths, parameters, states, patches, patch_vertices, local_triangles,
+                  corner_offsets, corners, gradients, residual);
+    set_argument(gather_displacements, 8, pressures[0]);
+}
+
+void StrainLimiter::Implementation::create_conjugate_gradient() {
+    const auto kernel = [&](const char* name) { return create_kernel(program.get(), name); };
+    create_apply_kernels();
+    cg_update = kernel("cg_update");
+    set_arguments(cg_update, 0, cloths, states, partials, residual, damped_diagonal, product, direction,
+                  direction_product);
+    if (options.kept_pressures == 0) return;
+    measure_guess = kernel("measure_guess");
+    set_arguments(measure_guess, 0, cloths, states, partials, residual);
+    start_from_guess = kernel("start_from_guess");
+    set_arguments(start_from_guess, 0, cloths, states, partials, residual, damped_diagonal, product);
 }
 
 void StrainLimiter::Implementation::create_apply_kernels() {
@@ -347,12 +370,23 @@ void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, const
     launch(commands, start_from_guess);
 }
 
-void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, const CallBudget& budget,
-                                                int sub_step) const {
+void StrainLimiter::Implementation::queue_assembly(CommandSequence& commands, int sub_step) const {
+    set_argument(assemble_gradients, 11, cl_int{sub_step});
+    launch(commands, assemble_gradients);
+    set_argument(begin_solve, 5, cl_int{sub_step});
+    launch_one_group(commands, begin_solve);
+}
+
+void StrainLimiter::Implementation::queue_displacements(CommandSequence& commands, int sub_step, cl_uint slot) const {
+    set_arguments(gather_displacements, 12, cl_int{sub_step}, slot);
+    launch(commands, gather_displacements);
+}
+
+void StrainLimiter::Implementation::queue_conjugate_gradient(CommandSequence& commands, const CallBudget& budget,
+                                                             int sub_step) const {
     const BufferHandle& pressure = pressures[std::min(static_cast<std::size_t>(sub_step), pressures.size() - 1)];
     use_pressures(pressure);
-    launch(commands, assemble_gradients);
-    launch_one_group(commands, begin_solve);
+    queue_assembly(commands, sub_step);
     if (assembled()) launch(commands, assemble_pressure_csr);
     if (options.kept_pressures > 0) queue_guess(commands, pressure);
     const cl_int queued =
@@ -368,8 +402,35 @@ void StrainLimiter::Implementation::queue_solve(CommandSequence& commands, const
         launch_one_group(commands, finish_solve);
     }
     // The slot of the residual after the last iteration.
-    set_arguments(gather_displacements, 12, cl_int{sub_step}, static_cast<cl_uint>(queued & 1));
-    launch(commands, gather_displacements);
+    queue_displacements(commands, sub_step, static_cast<cl_uint>(queued & 1));
+}
+
+void StrainLimiter::Implementation::queue_bound(CommandSequence& commands, int sub_step) const {
+    if (sub_step == 0) {
+        // Gradients scaled by the diagonal alone.
+        const cl_float one = 1.0f;
+        commands.fill(ordered_regularization, &one, sizeof one, 0, triangle_count * sizeof one);
+        set_argument(assemble_gradients, 11, cl_int{0});
+        launch(commands, assemble_gradients);
+    }
+    launch(commands, bound_vertices);
+    launch(commands, bound_triangles);
+}
+
+void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, const CallBudget& budget,
+                                                    int sub_step) const {
+    if (static_cast<std::uint32_t>(sub_step) % options.bound_period == 0) queue_bound(commands, sub_step);
+    queue_assembly(commands, sub_step);
+    const cl_int products = queued_products(budget, sub_step);
+    for (cl_int k = 0; k < products; ++k) {
+        // The last product writes the pressures, those before it take turns.
+        const bool to_pressures = (products - 1 - k) % 2 == 0;
+        const BufferHandle& next = to_pressures ? pressures[0] : direction;
+        const BufferHandle& current = to_pressures ? direction : pressures[0];
+        set_arguments(chebyshev_step, 10, current, next, cl_int{sub_step}, products, k);
+        launch(commands, chebyshev_step);
+    }
+    queue_displacements(commands, sub_step, 0);
 }
 
 void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, const CallBudget& budget) const {
@@ -381,9 +442,10 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
         launch(commands, start_walk);
     }
     for (cl_int sub_step = 0; sub_step < budget.sub_steps; ++sub_step) {
-        set_argument(assemble_gradients, 11, sub_step);
-        set_argument(begin_solve, 5, sub_step);
-        queue_solve(commands, budget, sub_step);
+        if (by_chebyshev())
+            queue_chebyshev(commands, budget, sub_step);
+        else
+            queue_conjugate_gradient(commands, budget, sub_step);
     }
     launch(commands, measure_area_change);
     launch_one_group(commands, end_call);
@@ -402,6 +464,9 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
         if (!p.enabled) continue;
         if (options.positions_only && p.stepping == Stepping::small_steps)
             invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
+        if (by_chebyshev() && p.adaptive_iterations > 0)
+            invalid("adaptive_iterations is " + std::to_string(p.adaptive_iterations) +
+                    ", expected 0: Options::solver is chebyshev, which has no iterations to go by");
         budget.add(as_run(p));
     }
     check_buffers(buffers);

@@ -51,7 +51,7 @@ struct StrainLimiter::Implementation {
         corner_offsets, corners;
     host::BufferHandle patches, patch_vertices, local_triangles, row_offsets, columns, shared, values;
     host::BufferHandle predicted, motion, correction, gradients, residual, damped_diagonal, product, direction,
-        direction_product;
+        direction_product, vertex_bound;
     /// One for each sub-step whose pressures are kept, one alone where none are; in one_group all in a single buffer.
     std::vector<host::BufferHandle> pressures;
 
@@ -62,6 +62,7 @@ struct StrainLimiter::Implementation {
         measure_area_change, begin_call, start_walk, begin_solve, end_call;
     host::Kernel assemble_pressure_csr, apply_dot, cg_update, finish_solve, gather_displacements, update_velocities;
     host::Kernel measure_guess, start_from_guess;
+    host::Kernel bound_vertices, bound_triangles, chebyshev_step;
     host::Kernel filter_in_one_group;
 
 private:
@@ -71,6 +72,7 @@ private:
     host::Adjacency plan(std::span<const std::shared_ptr<const Topology>> cloths, const Options& requested);
 
     bool one_group() const { return options.execution == Execution::one_group; }
+    bool by_chebyshev() const { return options.solver == Solver::chebyshev; }
     bool assembled() const { return options.apply == Apply::assembled_csr; }
 
     host::BufferHandle buffer(std::size_t size, const void* contents = nullptr) {
@@ -88,6 +90,8 @@ private:
     void create_buffers(const host::Adjacency& adjacency);
     void create_kernels();
     void create_apply_kernels();
+    void create_conjugate_gradient();
+    void create_chebyshev();
     /// From the first of the caller's positions to the last.
     std::size_t position_floats() const;
     void check_buffers(const Buffers& buffers) const;
@@ -97,7 +101,14 @@ private:
     void queue_parameters(host::CommandSequence& commands, std::span<const Parameters> given) const;
     void use_pressures(const host::BufferHandle& pressure) const;
     void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;
-    void queue_solve(host::CommandSequence& commands, const host::CallBudget& budget, int sub_step) const;
+    /// Assembles sub-step `sub_step` and decides whether it is done.
+    void queue_assembly(host::CommandSequence& commands, int sub_step) const;
+    /// Leaves the bound of the matrix that sub-step `sub_step` scales by: of the one before, or of its own where it is
+    /// the first.
+    void queue_bound(host::CommandSequence& commands, int sub_step) const;
+    void queue_chebyshev(host::CommandSequence& commands, const host::CallBudget& budget, int sub_step) const;
+    void queue_conjugate_gradient(host::CommandSequence& commands, const host::CallBudget& budget, int sub_step) const;
+    void queue_displacements(host::CommandSequence& commands, int sub_step, cl_uint slot) const;
     void queue_many_groups(host::CommandSequence& commands, const host::CallBudget& budget) const;
 
     void launch(host::CommandSequence& commands, const host::Kernel& kernel) const {

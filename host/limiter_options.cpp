@@ -41,6 +41,17 @@ std::size_t total_vertices(std::span<const std::shared_ptr<const Topology>> clot
     return total;
 }
 
+void check_solver(const Options& options) {
+    if (options.solver != Solver::conjugate_gradient && options.solver != Solver::chebyshev) invalid("unknown solver");
+    if (options.bound_period == 0) invalid("bound_period is 0, expected at least 1");
+    if (options.solver == Solver::conjugate_gradient) return;
+    if (options.matrix != Matrix::consistent || options.apply != Apply::matrix_free)
+        invalid("solver is chebyshev, which needs the consistent matrix, matrix-free");
+    if (options.kept_pressures > 0) invalid("solver is chebyshev, which takes no kept_pressures");
+    if (options.regularization_per_triangle)
+        invalid("solver is chebyshev, which needs one regularization for all triangles");
+}
+
 bool matrix_free_consistent(const Options& options) {
     return options.matrix == Matrix::consistent && options.apply == Apply::matrix_free;
 }
@@ -53,8 +64,8 @@ bool one_group_fits(const Options& options, const DeviceFacts& facts) {
 Execution resolve_execution(const Options& options, const DeviceFacts& facts, std::size_t largest) {
     switch (options.execution) {
         case Execution::automatic:
-            return matrix_free_consistent(options) && one_group_fits(options, facts) &&
-                           largest <= one_group_triangles(facts)
+            return matrix_free_consistent(options) && options.solver == Solver::conjugate_gradient &&
+                           one_group_fits(options, facts) && largest <= one_group_triangles(facts)
                        ? Execution::one_group
                        : Execution::many_groups;
         case Execution::many_groups:
@@ -62,6 +73,8 @@ Execution resolve_execution(const Options& options, const DeviceFacts& facts, st
         case Execution::one_group:
             if (!matrix_free_consistent(options))
                 invalid("execution is one_group, which needs the consistent matrix, matrix-free");
+            if (options.solver == Solver::chebyshev)
+                invalid("execution is one_group, which needs solver conjugate_gradient");
             if (!one_group_fits(options, facts))
                 throw Error(
                     ErrorCode::unsupported,
@@ -86,6 +99,7 @@ Options resolve(Options options, const DeviceFacts& facts, std::span<const std::
     if (options.inverse_mass_stride == 0) invalid("inverse_mass_stride is 0, expected at least 1");
     if (options.matrix != Matrix::consistent && options.matrix != Matrix::printed) invalid("unknown matrix");
     if (options.apply != Apply::assembled_csr && options.apply != Apply::matrix_free) invalid("unknown apply");
+    check_solver(options);
     options.execution = resolve_execution(options, facts, largest_triangle_count(cloths));
     if (options.work_group_size == 0)
         options.work_group_size =
@@ -108,11 +122,15 @@ bool uses_pattern(const Options& options) {
 std::vector<std::string_view> kernel_files(const Options& options) {
     if (options.execution == Execution::one_group)
         return {"set_parameters.cl", "rest_areas.cl", "filter_in_one_group.cl"};
-    std::vector<std::string_view> files{"set_parameters.cl",     "predict_positions.cl",    "order_triangle_values.cl",
-                                        "assemble_gradients.cl", "measure_area_change.cl",  "solve_control.cl",
-                                        "cg_update.cl",          "gather_displacements.cl", "update_velocities.cl",
-                                        "rest_areas.cl"};
+    std::vector<std::string_view> files{"set_parameters.cl",       "predict_positions.cl",   "order_triangle_values.cl",
+                                        "assemble_gradients.cl",   "measure_area_change.cl", "solve_control.cl",
+                                        "gather_displacements.cl", "update_velocities.cl",   "rest_areas.cl"};
     if (!options.positions_only) files.push_back("start_walk.cl");
+    if (options.solver == Solver::chebyshev) {
+        files.insert(files.end(), {"bound_matrix.cl", "chebyshev_step.cl"});
+        return files;
+    }
+    files.push_back("cg_update.cl");
     if (options.kept_pressures > 0) files.push_back("first_guess.cl");
     if (options.apply == Apply::assembled_csr)
         files.insert(files.end(), {"assemble_pressure_csr.cl", "csr_spmv_dot.cl"});
@@ -142,7 +160,8 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
            define("APSL_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
            define("APSL_PATCH_VERTICES", patch_vertices) +
            define("APSL_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +
-           define("APSL_KEPT_PRESSURES", options.kept_pressures);
+           define("APSL_KEPT_PRESSURES", options.kept_pressures) +
+           define("APSL_CHEBYSHEV", options.solver == Solver::chebyshev ? 1 : 0);
 }
 
 std::uint32_t patch_triangles(const DeviceFacts& facts, const Options& options, std::size_t largest) {

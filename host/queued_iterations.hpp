@@ -11,8 +11,9 @@ namespace apsl::host {
 /// What a call may take at most, over the parameters of all its cloths that are on.
 struct CallBudget {
     int sub_steps = 0;
-    int max_iterations = 1;
-    bool walks = false;  ///< a cloth takes small steps
+    int max_iterations = 0;
+    bool walks = false;        ///< a cloth takes small steps
+    bool one_schedule = true;  ///< α is the same for all cloths, sub-step by sub-step
     // The least of any: what makes for the longest solves.
     float first_regularization = std::numeric_limits<float>::infinity();
     float regularization = std::numeric_limits<float>::infinity();
@@ -25,5 +26,8 @@ struct CallBudget {
 /// cloth has `largest` triangles. What is left of max_iterations is one launch of finish_solve, by one work-group a
 /// cloth: seldom more than a formality.
 int queued_iterations(std::size_t largest, const CallBudget& budget, int sub_step);
+
+/// Products of a Chebyshev solve in sub-step `sub_step`: as many as the cloth with most of them takes.
+int queued_products(const CallBudget& budget, int sub_step);
 
 }  // namespace apsl::host

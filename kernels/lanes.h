@@ -49,6 +49,15 @@ APSL_INLINE void store_lanes(lanes value, __global float* values, uint first) {
     vstore8(value, 0, values + first);
 }
 
+// The lanes at place `n` of an array of this work-item.
+APSL_INLINE lanes private_lanes(const float* values, uint n) {
+    return vload8(n, values);
+}
+
+APSL_INLINE void store_private_lanes(lanes value, float* values) {
+    vstore8(value, 0, values);
+}
+
 APSL_INLINE float sum_of_lanes(lanes v) {
     const float4 a = v.lo + v.hi;
     const float2 b = a.lo + a.hi;
@@ -109,6 +118,14 @@ APSL_INLINE lanes load_lanes(__global const float* values, uint first) {
 
 APSL_INLINE void store_lanes(lanes value, __global float* values, uint first) {
     values[first] = value;
+}
+
+APSL_INLINE lanes private_lanes(const float* values, uint n) {
+    return values[n];
+}
+
+APSL_INLINE void store_private_lanes(lanes value, float* values) {
+    values[0] = value;
 }
 
 APSL_INLINE float sum_of_lanes(lanes v) {

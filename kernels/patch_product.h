@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// q = A r for the consistent matrix without assembling it, A = J̄ J̄ᵀ + diag((α − 1)/α): a work-group takes a patch of
+// Products with the consistent matrix without assembling it, A = J̄ J̄ᵀ + diag((α − 1)/α): a work-group takes a patch of
 // triangles at a time, gathers the forces u = J̄ᵀ r on the patch's vertices into local memory, and applies J̄ from there.
 // Vertices on a patch's rim are gathered by every patch they belong to.
 // Reference: apsl::reference::consistent_matrix times a vector.
@@ -27,32 +27,58 @@
 #endif
 #define APSL_PREFETCH_TRIANGLES 2048
 
-// This work-item's part of r·q.
+// The patches of this work-group, from `begin` up to `end`.
+typedef struct {
+    uint begin, end;
+} apsl_patch_range;
+
+APSL_INLINE apsl_patch_range patches_of(apsl_cloth cloth, bool active) {
+    const uint groups = (uint)get_num_groups(0);
+    const uint share = (cloth.patch_count + groups - 1u) / groups;
+    const uint begin = min((uint)get_group_id(0) * share, cloth.patch_count);
+    const uint end = active ? min(begin + share, cloth.patch_count) : begin;
+    const apsl_patch_range range = {cloth.patch_begin + begin, cloth.patch_begin + end};
+    return range;
+}
+
+// u = J̄ᵀ r on the vertices of a patch, those between `first` and `last` in patch_vertices.
+APSL_INLINE void gather_forces(uint first, uint last, __global const uint* patch_vertices,
+                               __global const uint* corner_offsets, __global const uint* corners,
+                               __global const apsl_gradients* gradients, __global const float* values,
+                               __local float4* forces) {
+    for (uint n = first + (uint)get_local_id(0); n < last; n += APSL_WORK_GROUP_SIZE)
+        forces[n - first] = sum_over_corners(corner_offsets, corners, gradients, values, patch_vertices[n]);
+}
+
+// (J̄ u)_a in units of APSL_GRADIENT_UNIT.
+APSL_INLINE float apply_to_forces(uint a, __global const ushort* local_triangles,
+                                  __global const apsl_gradients* gradients, __local const float4* forces) {
+    const ushort3 v = vload3(a, local_triangles);
+    const float4 terms = corner_gradient(gradients, 4u * a) * forces[v.x] +
+                         corner_gradient(gradients, 4u * a + 1u) * forces[v.y] +
+                         corner_gradient(gradients, 4u * a + 2u) * forces[v.z];
+    const float2 halves = terms.lo + terms.hi;
+    return halves.x + halves.y;
+}
+
+// q = A r; this work-item's part of r·q.
 APSL_INLINE float multiply_patches(apsl_cloth cloth, bool active, __global const uint2* patches,
                                    __global const uint* patch_vertices, __global const ushort* local_triangles,
                                    __global const uint* corner_offsets, __global const uint* corners,
                                    __global const apsl_gradients* gradients, __global const float* residual,
                                    __global float* product, __local float4* forces) {
-    const uint groups = (uint)get_num_groups(0);
-    const uint share = (cloth.patch_count + groups - 1u) / groups;
-    const uint begin = min((uint)get_group_id(0) * share, cloth.patch_count);
-    const uint end = active ? min(begin + share, cloth.patch_count) : begin;
+    const apsl_patch_range range = patches_of(cloth, active);
     float curvature = 0.0f;
-    for (uint patch = cloth.patch_begin + begin; patch < cloth.patch_begin + end; ++patch) {
+    for (uint patch = range.begin; patch < range.end; ++patch) {
         const uint2 first = patches[patch], last = patches[patch + 1];
-        for (uint n = first.y + (uint)get_local_id(0); n < last.y; n += APSL_WORK_GROUP_SIZE)
-            forces[n - first.y] = sum_over_corners(corner_offsets, corners, gradients, residual, patch_vertices[n]);
+        gather_forces(first.y, last.y, patch_vertices, corner_offsets, corners, gradients, residual, forces);
         group_barrier();
         for (uint a = first.x + (uint)get_local_id(0); a < last.x; a += APSL_WORK_GROUP_SIZE) {
             APSL_PREFETCH(gradients + a + APSL_PREFETCH_TRIANGLES);
             APSL_PREFETCH(residual + a + APSL_PREFETCH_TRIANGLES);
-            const ushort3 v = vload3(a, local_triangles);
             const float r = residual[a];
-            const float4 terms = corner_gradient(gradients, 4u * a) * forces[v.x] +
-                                 corner_gradient(gradients, 4u * a + 1u) * forces[v.y] +
-                                 corner_gradient(gradients, 4u * a + 2u) * forces[v.z];
-            const float2 halves = terms.lo + terms.hi;
-            const float q = APSL_GRADIENT_UNIT * (halves.x + halves.y) + gradients[a].shift * r;
+            const float q =
+                APSL_GRADIENT_UNIT * apply_to_forces(a, local_triangles, gradients, forces) + gradients[a].shift * r;
             product[a] = q;
             curvature += r * q;
         }

@@ -11,6 +11,11 @@
 #include "triangle_geometry.h"
 #include "work_group.h"
 
+// 1: systems are solved by a polynomial that the bound of the matrix is made for.
+#ifndef APSL_CHEBYSHEV
+#define APSL_CHEBYSHEV 0
+#endif
+
 // s = 1/√(α D); 0 where nothing can move the triangle, which makes its pressure 0 by definition.
 APSL_INLINE lanes jacobi_scale(lanes damped_diagonal, lanes rest_area) {
     const lanes scale = select((lanes)(0.0f), 1.0f / sqrt(damped_diagonal), damped_diagonal > 0.0f);
@@ -52,7 +57,8 @@ typedef struct {
 } apsl_assembly_sums;
 
 // gradients[a], residual[a] = s (A − A⁰), damped_diagonal[a] = α D. `alpha` holds for all triangles, unless
-// `regularization` has one for each. Both come from order_values.
+// `regularization` has one for each. Both come from order_values. For a Chebyshev solve `regularization` holds ρ, the
+// bound of the matrix over D, which takes the place of α in the scaling, and there is no damping.
 APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active, float alpha, float damping,
                                                   float adaptive_factor, __global const uint* triangles,
                                                   __global const float4* predicted, __global apsl_gradients* gradients,
@@ -68,6 +74,12 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         const uint a = cloth.triangle_begin + block * APSL_LANES;
         const apsl_triangle_geometry triangle = load_triangles(triangles, predicted, a);
         const lanes rest_area = load_lanes(rest_areas, a);
+#if APSL_CHEBYSHEV
+        (void)alpha;
+        (void)damping;
+        (void)adaptive_factor;
+        const lanes effective = load_lanes(regularization, a), shift = 0.0f;
+#else
 #if APSL_REGULARIZATION_PER_TRIANGLE
         (void)alpha;
         const lanes given = load_lanes(regularization, a);
@@ -76,6 +88,8 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         const lanes given = alpha;
 #endif
         const lanes effective = effective_regularization(given, damping, adaptive_factor);
+        const lanes shift = (effective - 1.0f) / effective;
+#endif
         const lanes damped = effective * triangle.diagonal;
         const lanes scale = jacobi_scale(damped, rest_area);
         const lanes stretch = select((lanes)(0.0f), triangle.area - rest_area, scale > 0.0f);
@@ -85,7 +99,7 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         pack_gradient(triangle, 0, scale, words);
         pack_gradient(triangle, 1, scale, words + 2);
         pack_gradient(triangle, 2, scale, words + 4);
-        words[6] = bits_of((effective - 1.0f) / effective);
+        words[6] = bits_of(shift);
         words[7] = 0;
         store_records(words, (__global int4*)gradients, a);
         store_lanes(r, residual, a);

@@ -102,6 +102,18 @@ std::vector<Contender> make_contenders() {
                      .settings = {{"strain_limiting.matrix", "consistent"},
                                   {"strain_limiting.stepping", "small_steps"},
                                   {"strain_limiting.adaptive_iterations", 0}}});
+    table.push_back({.name = "apsl_chebyshev",
+                     .title = "Area preserving, small steps by Chebyshev",
+                     .citation = han,
+                     .kind = ContenderKind::ours,
+                     .knobs = {sub_steps({8, 10, 12, 20}),
+                               {.name = kFirstRegularization, .standard = 1.1, .least = 0.0, .sweep = {}},
+                               regularization({1.4, 1.3}),
+                               {.name = "strain_limiting.bound_period", .standard = 1, .least = 1, .sweep = {1, 100}}},
+                     .settings = {{"strain_limiting.matrix", "consistent"},
+                                  {"strain_limiting.solver", "chebyshev"},
+                                  {"strain_limiting.stepping", "small_steps"},
+                                  {"strain_limiting.adaptive_iterations", 0}}});
     table.push_back(
         {.name = "apsl_direct",
          .title = "Area preserving, direct solves",

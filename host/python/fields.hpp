@@ -40,6 +40,8 @@ inline constexpr std::tuple option_fields{
     Field{"work_group_size", &Options::work_group_size},
     Field{"regularization_per_triangle", &Options::regularization_per_triangle},
     Field{"kept_pressures", &Options::kept_pressures},
+    Field{"solver", &Options::solver},
+    Field{"bound_period", &Options::bound_period},
 };
 inline constexpr std::size_t layout_fields = 6;
 
@@ -80,6 +82,9 @@ template <>
 inline constexpr std::array names_of<Stepping>{std::pair{Stepping::automatic, "automatic"},
                                                std::pair{Stepping::whole_step, "whole_step"},
                                                std::pair{Stepping::small_steps, "small_steps"}};
+template <>
+inline constexpr std::array names_of<Solver>{std::pair{Solver::conjugate_gradient, "conjugate_gradient"},
+                                             std::pair{Solver::chebyshev, "chebyshev"}};
 template <>
 inline constexpr std::array names_of<ErrorCode>{
     std::pair{ErrorCode::invalid_argument, "invalid_argument"}, std::pair{ErrorCode::invalid_mesh, "invalid_mesh"},

@@ -80,6 +80,12 @@ typedef enum apsl_stepping {
     APSL_STEPPING_SMALL_STEPS = 2 /**< each moves on by an equal part of the time step; the last only corrects */
 } apsl_stepping;
 
+/** How the system of a sub-step is solved. */
+typedef enum apsl_solver {
+    APSL_SOLVER_CONJUGATE_GRADIENT = 0, /**< of the damped matrix, to the tolerance */
+    APSL_SOLVER_CHEBYSHEV = 1           /**< a fixed polynomial with the reach of alpha, no sums over the cloth */
+} apsl_solver;
+
 /** apsl::Topology behind a handle: immutable, may be shared between limiters and threads. */
 typedef struct apsl_topology apsl_topology;
 /** apsl::StrainLimiter behind a handle: one thread at a time. */
@@ -99,7 +105,9 @@ typedef struct apsl_limiter_options {
     int32_t positions_only;              /**< not 0: no velocities; positions are the end of the step, in and out */
     int32_t regularization_per_triangle; /**< not 0: a regularization buffer is given with every call */
     uint32_t kept_pressures;             /**< sub-steps whose pressures the next call's solves start from */
-    uint32_t reserved[8];                /**< zeros; room for fields to come, so that the size stays */
+    int32_t solver;                      /**< apsl_solver */
+    uint32_t bound_period;               /**< by Chebyshev, >= 1: sub-steps from one bound of the matrix to the next */
+    uint32_t reserved[6];                /**< zeros; room for fields to come, so that the size stays */
 } apsl_limiter_options;
 
 /** apsl::Parameters: what may change from call to call. Begin with apsl_limiter_default_parameters(). */

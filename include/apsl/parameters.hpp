@@ -20,6 +20,14 @@ enum class Apply : std::int32_t {
     matrix_free = 1,    ///< from the corner gradients, nothing assembled
 };
 
+/// How the system of a sub-step is solved.
+enum class Solver : std::int32_t {
+    conjugate_gradient = 0,  ///< of the damped matrix G + (α − 1) diag(G), to Parameters::tolerance
+    /// A fixed Chebyshev polynomial in G, of a degree with the reach that α has (docs/formulation.md): no sums over the
+    /// cloth, one launch an iteration, and stable however few of them. Parameters::tolerance is not used.
+    chebyshev = 1,
+};
+
 /// How a call is divided over the device.
 enum class Execution : std::int32_t {
     automatic = 0,    ///< one_group where the largest cloth is small, many_groups otherwise

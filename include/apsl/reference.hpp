@@ -29,9 +29,10 @@ struct Buffers {
 template <class Real>
 class BasicStrainLimiter {
 public:
-    /// `kept_pressures`: as Options::kept_pressures of apsl::StrainLimiter.
+    /// `kept_pressures`, `solver` and `bound_period`: as in Options of apsl::StrainLimiter, with the same limits.
     explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix = Matrix::consistent,
-                                std::uint32_t kept_pressures = 0);
+                                std::uint32_t kept_pressures = 0, Solver solver = Solver::conjugate_gradient,
+                                std::uint32_t bound_period = 1);
     ~BasicStrainLimiter();
     BasicStrainLimiter(BasicStrainLimiter&&) noexcept;  ///< what was moved from may only be assigned to or destroyed
     BasicStrainLimiter& operator=(BasicStrainLimiter&&) noexcept;  ///< likewise

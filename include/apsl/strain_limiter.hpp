@@ -25,8 +25,8 @@ APSL_STRUCTS_BEGIN
 struct Options {
     Matrix matrix = Matrix::consistent;  ///< what couples the pressures
     Apply apply = Apply::matrix_free;    ///< how it is applied
-    /// one_group needs the consistent matrix, matrix-free, and on a device that is no CPU neither kept_pressures nor
-    /// regularization_per_triangle.
+    /// one_group needs the consistent matrix, matrix-free, Conjugate Gradient, and on a device that is no CPU neither
+    /// kept_pressures nor regularization_per_triangle.
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;
@@ -51,6 +51,13 @@ struct Options {
     /// with the matrix a solve, counted as an iteration. As many as there are sub-steps, or 0: solves start from zero.
     /// Results then depend on the calls before, within the tolerance of the solves.
     std::uint32_t kept_pressures = 0;
+    /// chebyshev needs the consistent matrix, matrix-free, no kept_pressures and one α for all triangles, and with
+    /// every call Parameters::adaptive_iterations 0.
+    Solver solver = Solver::conjugate_gradient;
+    /// chebyshev: sub-steps from one bound of the matrix to the next, ≥ 1. 1 is for garments, where a triangle may
+    /// become another from one sub-step to the next; where none does, one bound for all sub-steps of a call (as many or
+    /// more) is quicker (docs/formulation.md).
+    std::uint32_t bound_period = 1;
 };
 
 /// A place in a caller's buffer. The element stride is fixed in Options.

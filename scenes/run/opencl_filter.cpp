@@ -35,6 +35,8 @@ Options options_for(const StrainLimiting& settings) {
     options.matrix = settings.matrix;
     options.apply = settings.apply;
     options.execution = settings.execution;
+    options.solver = settings.solver;
+    options.bound_period = settings.bound_period;
     options.regularization_per_triangle = !settings.regularization.empty();
     options.kept_pressures = settings.kept_pressures;
     return options;

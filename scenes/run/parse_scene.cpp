@@ -118,6 +118,18 @@ Integrator parse_integrator(SceneObject object) {
     return integrator;
 }
 
+void check_chebyshev(SceneObject& object, const StrainLimiting& settings) {
+    if (settings.matrix != Matrix::consistent || settings.apply != Apply::matrix_free) {
+        object.find("solver").fail("chebyshev needs the consistent matrix, matrix_free");
+    }
+    if (settings.execution == Execution::one_group) object.find("solver").fail("chebyshev does not run in one_group");
+    if (!settings.regularization.empty()) object.find("solver").fail("chebyshev needs one regularization for all");
+    if (settings.kept_pressures > 0) object.find("solver").fail("chebyshev takes no kept_pressures");
+    if (settings.parameters.adaptive_iterations > 0) {
+        object.find("solver").fail("chebyshev takes no adaptive_iterations");
+    }
+}
+
 StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     StrainLimiting settings;
     Parameters& parameters = settings.parameters;
@@ -125,6 +137,9 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
         object.choice("matrix", settings.matrix, {{"consistent", Matrix::consistent}, {"printed", Matrix::printed}});
     settings.apply = object.choice("apply", settings.apply,
                                    {{"assembled_csr", Apply::assembled_csr}, {"matrix_free", Apply::matrix_free}});
+    settings.solver =
+        object.choice("solver", settings.solver,
+                      {{"conjugate_gradient", Solver::conjugate_gradient}, {"chebyshev", Solver::chebyshev}});
     settings.execution = object.choice("execution", settings.execution,
                                        {{"automatic", Execution::automatic},
                                         {"many_groups", Execution::many_groups},
@@ -159,6 +174,8 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
                                          {"whole_step", Stepping::whole_step},
                                          {"small_steps", Stepping::small_steps}});
     settings.kept_pressures = static_cast<std::uint32_t>(object.integer("kept_pressures", 0, 0, kMaxKeptPressures));
+    settings.bound_period = static_cast<std::uint32_t>(object.integer("bound_period", 1, 1, kMaxCount));
+    if (settings.solver == Solver::chebyshev) check_chebyshev(object, settings);
     object.refuse_other_keys();
     try {
         validate(parameters);  // what 32-bit floats make of the numbers

@@ -85,6 +85,8 @@ using Integrator = std::variant<NoIntegrator, ImplicitSpringsIntegrator, StandAl
 struct StrainLimiting {
     Matrix matrix = Matrix::consistent;
     Apply apply = Apply::matrix_free;
+    Solver solver = Solver::conjugate_gradient;
+    std::uint32_t bound_period = 1;  ///< by Chebyshev: sub-steps from one bound of the matrix to the next
     Execution execution = Execution::automatic;
     std::uint32_t kept_pressures = 0;   ///< sub-steps whose pressures the next step's solves start from
     Parameters parameters;              ///< time_step is the scene's

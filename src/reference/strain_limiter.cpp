@@ -4,12 +4,14 @@
 
 #include "reference/adaptive_regularization.hpp"
 #include "reference/area_change.hpp"
+#include "reference/chebyshev.hpp"
 #include "reference/check.hpp"
 #include "reference/conjugate_gradient.hpp"
 #include "reference/displacements.hpp"
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
 
+#include "chebyshev_products.hpp"
 #include "scheduled_regularization.hpp"
 #include "stepping.hpp"
 
@@ -18,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace apsl::reference {
@@ -63,6 +66,8 @@ template <class Real>
 struct BasicStrainLimiter<Real>::Implementation {
     std::shared_ptr<const Topology> topology;
     Matrix matrix;
+    Solver solver;
+    int bound_period = 1;
     std::vector<std::uint8_t> shared;  // CsrPattern::shared; its offsets and columns live on in G
     SparseMatrix<Real> G;
 
@@ -78,6 +83,8 @@ struct BasicStrainLimiter<Real>::Implementation {
     Real adaptive_factor = Real(1);              // outlives the call
     std::vector<TriangleVector<Real>> kept;      // √(α D) λ of the sub-steps of the call before
     ConjugateGradientScratch<Real> scratch;
+    TriangleVector<Real> bound;  // B over D with its margin, [T]
+    ChebyshevScratch<Real> chebyshev_scratch;
     Stats stats{};
 
     void predict(const Buffers<Real>& buffers, Real time_step) {
@@ -106,8 +113,42 @@ struct BasicStrainLimiter<Real>::Implementation {
         }
     }
 
+    /// b = A − A⁰ at the present geometry.
+    void measure_excess(const Buffers<Real>& buffers) {
+        area_excess.resize(static_cast<Eigen::Index>(geometry.size()));
+        for (std::size_t a = 0; a < geometry.size(); ++a)
+            area_excess[a] = buffers.rest_areas[a] == Real(0) ? Real(0) : geometry[a].area - buffers.rest_areas[a];
+    }
+
+    /// The bound of G at the present geometry, over D, so that the geometry of a later sub-step scales it.
+    void bound_matrix(const Buffers<Real>& buffers) {
+        diagonal_bound(*topology, std::span<const TriangleGeometry<Real>>(geometry), buffers.inverse_masses, bound);
+        for (Eigen::Index a = 0; a < bound.size(); ++a) {
+            const Real diagonal = G.coeff(a, a);
+            bound[a] = diagonal > Real(0) ? static_cast<Real>(bound_margin) * bound[a] / diagonal
+                                          : static_cast<Real>(unknown_bound);
+        }
+    }
+
+    /// A Chebyshev polynomial in place of a solve, of the degree that belongs to α; λ is left in `lambda`.
+    SolveResult<Real> solve_by_chebyshev(const Buffers<Real>& buffers, const Parameters& parameters) {
+        const std::span<const TriangleGeometry<Real>> triangles = geometry;
+        consistent_matrix(*topology, shared, triangles, buffers.inverse_masses, G);
+        if (stats.sub_steps == 0) bound_matrix(buffers);
+        measure_excess(buffers);
+        const double alpha =
+            scheduled_regularization(static_cast<double>(parameters.regularization), parameters, stats.sub_steps);
+        const int products = chebyshev_products(alpha, parameters.max_iterations);
+        const TriangleVector<Real> scale = bound.cwiseProduct(G.diagonal());
+        chebyshev(G, scale, area_excess, products, chebyshev_scratch, lambda);
+        if ((stats.sub_steps + 1) % bound_period == 0) bound_matrix(buffers);  // for the next one
+        const bool finite = lambda.allFinite();
+        return {products, finite ? Real(0) : std::numeric_limits<Real>::quiet_NaN(), true};
+    }
+
     /// One solve of (G + (α − 1) diag G) λ = b at the present geometry; λ is left in `lambda`.
     SolveResult<Real> solve(const Buffers<Real>& buffers, const Parameters& parameters) {
+        if (solver == Solver::chebyshev) return solve_by_chebyshev(buffers, parameters);
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         if (matrix == Matrix::consistent)
             consistent_matrix(*topology, shared, triangles, buffers.inverse_masses, G);
@@ -122,9 +163,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         }
         regularize(std::span<const Real>(effective_regularization), G);
 
-        area_excess.resize(static_cast<Eigen::Index>(geometry.size()));
-        for (std::size_t a = 0; a < geometry.size(); ++a)
-            area_excess[a] = buffers.rest_areas[a] == Real(0) ? Real(0) : geometry[a].area - buffers.rest_areas[a];
+        measure_excess(buffers);
         const auto tolerance = static_cast<Real>(solve_tolerance(parameters));
         if (kept.empty())
             return conjugate_gradient(G, area_excess, tolerance, parameters.max_iterations, scratch, lambda);
@@ -244,13 +283,21 @@ struct BasicStrainLimiter<Real>::Implementation {
 
 template <class Real>
 BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix,
-                                             std::uint32_t kept_pressures)
+                                             std::uint32_t kept_pressures, Solver solver, std::uint32_t bound_period)
     : implementation_(std::make_unique<Implementation>()) {
     if (!topology) throw Error(ErrorCode::invalid_argument, "topology is null, expected one from Topology::build");
     if (matrix != Matrix::consistent && matrix != Matrix::printed)
         throw Error(ErrorCode::invalid_argument, "matrix is " + std::to_string(static_cast<int>(matrix)) +
                                                      ", expected consistent (0) or printed (1)");
+    if (solver != Solver::conjugate_gradient && solver != Solver::chebyshev)
+        throw Error(ErrorCode::invalid_argument, "solver is " + std::to_string(static_cast<int>(solver)) +
+                                                     ", expected conjugate_gradient (0) or chebyshev (1)");
+    if (solver == Solver::chebyshev && (matrix != Matrix::consistent || kept_pressures > 0))
+        throw Error(ErrorCode::invalid_argument,
+                    "solver is chebyshev, which needs the consistent matrix and no kept_pressures");
     CsrPattern pattern = topology->csr_pattern(matrix);
+    implementation_->solver = solver;
+    implementation_->bound_period = static_cast<int>(std::clamp<std::uint32_t>(bound_period, 1, 1u << 30));
     implementation_->topology = std::move(topology);
     implementation_->matrix = matrix;
     implementation_->kept.assign(
@@ -277,13 +324,18 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
            bytes(i.area_excess) + bytes(i.lambda) + bytes(i.effective_regularization) +
            i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) + bytes(i.scratch.inverse_diagonal) +
            bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) +
-           bytes(i.scratch.product);
+           bytes(i.scratch.product) + bytes(i.bound) + bytes(i.chebyshev_scratch.inverse_bound) +
+           bytes(i.chebyshev_scratch.residual) + bytes(i.chebyshev_scratch.step) + bytes(i.chebyshev_scratch.product);
 }
 
 template <class Real>
 void BasicStrainLimiter<Real>::enqueue(const Buffers<Real>& buffers, const Parameters& parameters) {
     validate(parameters);
     check(*implementation_->topology, buffers);
+    if (implementation_->solver == Solver::chebyshev &&
+        (!buffers.regularization.empty() || parameters.adaptive_iterations > 0))
+        throw Error(ErrorCode::invalid_argument,
+                    "solver is chebyshev, which needs one regularization for all triangles and adaptive_iterations 0");
     if (!parameters.enabled) {
         implementation_->stats = {};
         implementation_->stats.status = Status::off;

@@ -18,14 +18,22 @@ AXES = [
     [{"APSL_POSITION_STRIDE": stride, "APSL_VELOCITY_STRIDE": stride, "APSL_POSITION_COMPONENT_STRIDE": component,
       "APSL_VELOCITY_COMPONENT_STRIDE": component, "APSL_INVERSE_MASS_STRIDE": mass, "APSL_POSITIONS_ONLY": positions}
      for stride, component, mass, positions in [(3, 1, 1, 0), (4, 1, 4, 0), (1, 65536, 1, 0), (4, 1, 4, 1)]],
-    [{"APSL_REGULARIZATION_PER_TRIANGLE": 0}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1}],
+    # A Chebyshev solve takes one α for all.
+    [{"APSL_REGULARIZATION_PER_TRIANGLE": alpha, "APSL_CHEBYSHEV": chebyshev}
+     for alpha, chebyshev in [(0, 0), (1, 0), (0, 1)]],
     [{"APSL_KEPT_PRESSURES": 0}, {"APSL_KEPT_PRESSURES": 8}],
     # What the patches of 512 triangles of most meshes have; host/ passes the number of the meshes at hand.
     [{"APSL_PATCH_VERTICES": 400}],
 ]
 
-# Combinations that host/ never builds for a GPU (host/limiter_options.cpp).
-NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSL_KEPT_PRESSURES": 8}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1})}
+# Combinations that host/ never builds for a GPU (host/limiter_options.cpp), or that make no other code.
+NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSL_KEPT_PRESSURES": 8}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1},
+                                           {"APSL_CHEBYSHEV": 1}),
+                "gather_displacements.cl": ({"APSL_KEPT_PRESSURES": 8, "APSL_CHEBYSHEV": 1},
+                                            {"APSL_POSITION_STRIDE": 1, "APSL_CHEBYSHEV": 1},
+                                            {"APSL_POSITION_STRIDE": 4, "APSL_CHEBYSHEV": 1}),
+                "order_triangle_values.cl": ({"APSL_CHEBYSHEV": 1},),
+                "measure_area_change.cl": ({"APSL_CHEBYSHEV": 1},)}
 
 
 @dataclass(frozen=True)

@@ -246,6 +246,8 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.positions_only == 0);
     CHECK(o.regularization_per_triangle == 0);
     CHECK(o.kept_pressures == options.kept_pressures);
+    CHECK(o.solver == static_cast<int>(options.solver));
+    CHECK(o.bound_period == options.bound_period);
     const apsl_limiter_parameters p = apsl_limiter_default_parameters();
     const Parameters parameters;
     CHECK(p.time_step == parameters.time_step);
@@ -266,7 +268,7 @@ TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {
     const MovingCloth cloth = moving_cloth(grid(3, 3, 1.0, 1.0, Diagonals::alternating), 1);
     const CTopology topology(cloth);
     apsl_limiter_options options = apsl_limiter_default_options();
-    options.reserved[7] = 5;
+    options.reserved[5] = 5;
     apsl_limiter* limiter = nullptr;
     CHECK(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &options, &limiter) ==
           APSL_ERROR_INVALID_ARGUMENT);

@@ -62,6 +62,18 @@ TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]"
                   options({.matrix = Matrix::printed, .execution = Execution::one_group}));
     check_invalid("execution is one_group, which needs the consistent matrix, matrix-free",
                   options({.apply = Apply::assembled_csr, .execution = Execution::one_group}));
+    check_invalid("bound_period is 0, expected at least 1", options({.bound_period = 0}));
+    check_invalid("unknown solver", options({.solver = static_cast<Solver>(2)}));
+    check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",
+                  options({.matrix = Matrix::printed, .solver = Solver::chebyshev}));
+    check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",
+                  options({.apply = Apply::assembled_csr, .solver = Solver::chebyshev}));
+    check_invalid("solver is chebyshev, which takes no kept_pressures",
+                  options({.kept_pressures = 1, .solver = Solver::chebyshev}));
+    check_invalid("solver is chebyshev, which needs one regularization for all triangles",
+                  options({.regularization_per_triangle = true, .solver = Solver::chebyshev}));
+    check_invalid("execution is one_group, which needs solver conjugate_gradient",
+                  options({.execution = Execution::one_group, .solver = Solver::chebyshev}));
     check_error(ErrorCode::unsupported, "work_group_size is 1073741824", options({.work_group_size = 1u << 30}));
 
     const std::vector<std::shared_ptr<const Topology>> none;
@@ -124,6 +136,12 @@ TEST_CASE("enqueue refuses buffers it cannot use, names them, and queues nothing
         check_invalid(buffer + " holds", with([](BufferView& view) { view.offset = 4; }));  // one float too few
         check_invalid(buffer, with([](BufferView& view) { view.offset = SIZE_MAX - 3; }));
     }
+    StrainLimiter by_chebyshev = limiter({.solver = Solver::chebyshev});
+    CHECK(by_chebyshev.options().execution == Execution::many_groups);
+    check_invalid("adaptive_iterations is 4, expected 0: Options::solver is chebyshev", [&] {
+        clReleaseEvent(by_chebyshev.enqueue(queue.get(), CallerBuffers({&cloth(), 1}, {}).views(),
+                                            Parameters{.adaptive_iterations = 4}));
+    });
     StrainLimiter positions_alone = limiter({.positions_only = true});
     check_invalid("buffers.velocities is given, but Options::positions_only is on", [&] {
         clReleaseEvent(positions_alone.enqueue(queue.get(), CallerBuffers({&cloth(), 1}, {}).views(), Parameters{}));

@@ -16,7 +16,9 @@ namespace apsl::test {
 std::string variant_name(const Options& options) {
     const std::string size =
         options.work_group_size == 0 ? "the default size" : std::to_string(options.work_group_size);
-    return std::string(options.matrix == Matrix::consistent ? "consistent" : "printed") +
+    return std::string(options.solver == Solver::chebyshev    ? "chebyshev"
+                       : options.matrix == Matrix::consistent ? "consistent"
+                                                              : "printed") +
            (options.apply == Apply::assembled_csr ? ", assembled" : ", matrix-free") +
            (options.execution == Execution::one_group     ? ", one group of "
             : options.execution == Execution::many_groups ? ", many groups of "
@@ -34,7 +36,7 @@ Filtered filter_on_device(const MovingCloth& cloth, const Options& options, cons
 }
 
 Filtered filter_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
-    reference::StrainLimiter limiter(cloth.topology, options.matrix);
+    reference::StrainLimiter limiter(cloth.topology, options.matrix, 0, options.solver, options.bound_period);
     std::vector<double> velocities = cloth.velocities;
     std::span<const double> alpha;
     if (options.regularization_per_triangle) alpha = cloth.regularization;

@@ -23,6 +23,9 @@ constexpr std::array<Options, 5> variants{
 constexpr Options many_groups = variants[1];
 constexpr Options one_group = variants[4];
 
+/// A polynomial in place of CG.
+constexpr Options by_chebyshev{.execution = Execution::many_groups, .solver = Solver::chebyshev};
+
 /// For messages: "printed, assembled, many groups of 64".
 std::string variant_name(const Options& options);
 

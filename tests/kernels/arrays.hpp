@@ -63,6 +63,7 @@ struct Arrays {
     DeviceArray<float> values;   ///< the scaled matrix
     DeviceArray<float> product;  ///< poisoned, 0 in the padding; the rest is poisoned there too
     DeviceArray<float> direction, direction_product, pressure;
+    DeviceArray<float> vertex_bound;                                ///< of bound_vertices
     DeviceArray<float> ordered_rest_areas, ordered_regularization;  ///< what order_triangle_values makes
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
 

@@ -21,7 +21,8 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
                                 define("APSL_POSITION_STRIDE", arrays.position_placement.stride) +
                                 define("APSL_VELOCITY_STRIDE", arrays.velocity_placement.stride) +
                                 define("APSL_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
-                                define("APSL_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0);
+                                define("APSL_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
+                                define("APSL_CHEBYSHEV", build.chebyshev ? 1 : 0);
     // Never released, see transfer_queue() in support/opencl.cpp.
     static auto& programs = *new std::map<std::string, host::ProgramHandle>;
     static auto& kernels = *new std::map<std::string, host::Kernel>;
@@ -178,6 +179,28 @@ void cg_update(Arrays& a, const Build& build, int iteration) {
     const host::Kernel& k = kernel(a, build, "cg_update.cl", "cg_update");
     set_arguments(k, 0, a.cloths, a.states, a.partials, a.residual, a.damped_diagonal, a.product, a.direction,
                   a.direction_product, a.pressure, cl_int{iteration});
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void bound_vertices(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "bound_matrix.cl", "bound_vertices");
+    set_arguments(k, 0, a.cloths, a.states, a.corner_offsets, a.corners, a.gradients, a.damped_diagonal,
+                  a.vertex_bound);
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void bound_triangles(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "bound_matrix.cl", "bound_triangles");
+    set_arguments(k, 0, a.cloths, a.states, a.triangles, a.damped_diagonal, a.vertex_bound, a.ordered_regularization);
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void chebyshev_step(Arrays& a, const Build& build, int sub_step, int launched, int launch) {
+    const host::Kernel& k = kernel(a, build, "chebyshev_step.cl", "chebyshev_step");
+    const bool to_pressure = (launched - 1 - launch) % 2 == 0;
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.patches, a.patch_vertices, a.local_triangles,
+                  a.corner_offsets, a.corners, a.gradients, a.residual, to_pressure ? a.direction : a.pressure,
+                  to_pressure ? a.pressure : a.direction, cl_int{sub_step}, cl_int{launched}, cl_int{launch});
     run(k, a.groups, build, a.cloth_count());
 }
 

@@ -16,6 +16,7 @@ struct Build {
     std::uint32_t work_group_size = 64;
     Matrix matrix = Matrix::consistent;
     bool alpha_per_triangle = false;
+    bool chebyshev = false;
 };
 
 /// 1, 32, 64 and 256 work-items a group, as far as the device goes.
@@ -43,6 +44,10 @@ void matrix_free_apply_dot(Arrays& arrays, const Build& build, int iteration);
 void measure_guess(Arrays& arrays, const Build& build);
 void start_from_guess(Arrays& arrays, const Build& build);
 void cg_update(Arrays& arrays, const Build& build, int iteration);
+void bound_vertices(Arrays& arrays, const Build& build);
+void bound_triangles(Arrays& arrays, const Build& build);
+/// Launch `launch` of `launched`; the last writes the pressure, those before it take turns with the direction.
+void chebyshev_step(Arrays& arrays, const Build& build, int sub_step, int launched, int launch);
 /// `iterations`: those done before.
 void finish_solve(Arrays& arrays, const Build& build, int iterations);
 void gather_displacements(Arrays& arrays, const Build& build, std::uint32_t slot, int sub_step = 0);

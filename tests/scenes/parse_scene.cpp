@@ -66,6 +66,8 @@ TEST_CASE("a stage that is named without values takes the defaults of the stage"
     CHECK(scene.strain_limiting->parameters.first_regularization == defaults.first_regularization);
     CHECK(scene.strain_limiting->kept_pressures == 0);
     CHECK(scene.strain_limiting->execution == Execution::automatic);
+    CHECK(scene.strain_limiting->solver == Solver::conjugate_gradient);
+    CHECK(scene.strain_limiting->bound_period == 1);
     CHECK(scene.strain_limiting->regularization.empty());
     CHECK(scene.colliders.size() == 3);
 }
@@ -175,9 +177,9 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "color: unknown key, expected one of mesh, density, pins, masses, start, gravity, time_step, "
          "steps_per_frame, frames, integrator, strain_limiting, colliders"},
         {R"("strain_limiting": {"alpha": 2})",
-         "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, regularization, "
+         "strain_limiting.alpha: unknown key, expected one of matrix, apply, solver, execution, regularization, "
          "sub_steps, target_area_change, tolerance, max_iterations, adaptive_iterations, first_regularization, "
-         "stepping, kept_pressures"},
+         "stepping, kept_pressures, bound_period"},
         {R"("strain_limiting": {"regularization": 0.99})",
          "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
         {R"("strain_limiting": {"regularization": [1, 0.5]})",
@@ -195,6 +197,18 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "strain_limiting.kept_pressures: expected a whole number from 0 to 1000, got 1001"},
         {R"("strain_limiting": {"execution": "one_group", "apply": "assembled_csr"})",
          "strain_limiting.execution: one_group needs the consistent matrix, matrix_free"},
+        {R"("strain_limiting": {"solver": "jacobi"})",
+         "strain_limiting.solver: expected \"conjugate_gradient\" or \"chebyshev\", got \"jacobi\""},
+        {R"("strain_limiting": {"solver": "chebyshev", "matrix": "printed"})",
+         "strain_limiting.solver: chebyshev needs the consistent matrix, matrix_free"},
+        {R"("strain_limiting": {"solver": "chebyshev", "execution": "one_group"})",
+         "strain_limiting.solver: chebyshev does not run in one_group"},
+        {R"("strain_limiting": {"solver": "chebyshev", "regularization": [1.2, 1.3]})",
+         "strain_limiting.solver: chebyshev needs one regularization for all"},
+        {R"("strain_limiting": {"solver": "chebyshev", "kept_pressures": 2})",
+         "strain_limiting.solver: chebyshev takes no kept_pressures"},
+        {R"("strain_limiting": {"solver": "chebyshev", "adaptive_iterations": 2})",
+         "strain_limiting.solver: chebyshev takes no adaptive_iterations"},
         {R"("strain_limiting": {"target_area_change": -0.1})",
          "strain_limiting.target_area_change: expected a number ≥ 0, got -0.1"},
         {R"("strain_limiting": {"matrix": "exact"})",

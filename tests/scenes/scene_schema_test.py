@@ -37,7 +37,7 @@ FULL = {
     "strain_limiting": {"matrix": "consistent", "apply": "matrix_free", "execution": "one_group",
                         "regularization": 1.2, "sub_steps": 10, "target_area_change": 0, "tolerance": 0.1,
                         "max_iterations": 50, "adaptive_iterations": 8, "first_regularization": 1.01,
-                        "kept_pressures": 10},
+                        "kept_pressures": 10, "solver": "conjugate_gradient", "bound_period": 2},
     "colliders": [
         {"sphere": {"center": [0, 0, 0], "radius": 1, "friction": 0.1, "thickness": 0.1}},
         {"plane": {"point": [0, 0, 0], "normal": [0, 1, 0], "friction": 0.1, "thickness": 0.1}},
@@ -62,7 +62,7 @@ BAD_VALUES = [
     (("strain_limiting", "matrix"), "exact"), (("strain_limiting", "sub_steps"), -1),
     (("strain_limiting", "max_iterations"), 0), (("strain_limiting", "adaptive_iterations"), -1),
     (("strain_limiting", "first_regularization"), 0.5), (("strain_limiting", "kept_pressures"), -1),
-    (("strain_limiting", "execution"), "serial"), (("strain_limiting", "target_area_change"), -1),
+    (("strain_limiting", "execution"), "serial"), (("strain_limiting", "solver"), "jacobi"), (("strain_limiting", "bound_period"), 0), (("strain_limiting", "target_area_change"), -1),
     (("masses",), {}), (("masses", 0), {"factor": 2}), (("masses", 0, "factor"), 0), (("masses", 1, "corners"), ["x"]),
     (("start",), []), (("start", "scale"), [1, 1]), (("start", "random"), -1),
     (("colliders", 0), {}), (("colliders", 0, "sphere", "radius"), 0), (("colliders", 1, "plane", "friction"), -1),

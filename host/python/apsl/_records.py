@@ -18,6 +18,8 @@ class Options(TypedDict, total=False):
     work_group_size: int  # a power of two; 0 takes what suits the device
     regularization_per_triangle: bool  # `regularization` is then an array [T] in every call
     kept_pressures: int  # sub-steps whose pressures the next call's solves start from
+    solver: Literal["conjugate_gradient", "chebyshev"]  # chebyshev: a fixed polynomial with the reach of α
+    bound_period: int  # by Chebyshev, ≥ 1: sub-steps from one bound of the matrix to the next
 
 
 class Parameters(TypedDict, total=False):

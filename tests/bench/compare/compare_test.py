@@ -55,7 +55,7 @@ class Compare(unittest.TestCase):
         runs = self.results()["runs"]
         keys = [json.dumps([run["method"], run["knobs"]], sort_keys=True) for run in runs]
         self.assertEqual(len(keys), len(set(keys)))
-        ours = {"none", "springs", "apsl", "apsl_printed", "apsl_adaptive", "apsl_direct", "apsl_small_steps",
+        ours = {"none", "springs", "apsl", "apsl_printed", "apsl_adaptive", "apsl_direct", "apsl_small_steps", "apsl_chebyshev",
                 "apsl_several_steps"}
         self.assertLess(ours, {run["method"] for run in runs})
         for run in runs:

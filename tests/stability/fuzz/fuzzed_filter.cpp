@@ -22,7 +22,8 @@ bool same_options(const Options& a, const Options& b) {
            a.velocity_stride == b.velocity_stride && a.position_component_stride == b.position_component_stride &&
            a.velocity_component_stride == b.velocity_component_stride &&
            a.inverse_mass_stride == b.inverse_mass_stride &&
-           a.regularization_per_triangle == b.regularization_per_triangle && a.kept_pressures == b.kept_pressures;
+           a.regularization_per_triangle == b.regularization_per_triangle && a.kept_pressures == b.kept_pressures &&
+           a.solver == b.solver && a.bound_period == b.bound_period;
 }
 
 }  // namespace
@@ -64,7 +65,8 @@ template <class Real>
 ReferenceFilter<Real>::ReferenceFilter(const FuzzCase& c)
     : regularization_per_triangle_(c.options.regularization_per_triangle) {
     for (const MovingCloth& cloth : c.cloths)
-        limiters_.emplace_back(cloth.topology, c.options.matrix, c.options.kept_pressures);
+        limiters_.emplace_back(cloth.topology, c.options.matrix, c.options.kept_pressures, c.options.solver,
+                               c.options.bound_period);
 }
 
 template <class Real>

@@ -47,7 +47,10 @@ void print(const FuzzCase& c, std::ostream& out) {
         << c.options.position_stride << " and " << c.options.velocity_stride << ", from component to component "
         << c.options.position_component_stride << ", of masses " << c.options.inverse_mass_stride
         << (c.options.regularization_per_triangle ? ", alpha per triangle" : "") << ", kept pressures "
-        << c.options.kept_pressures << ", offset " << c.offset << '\n';
+        << c.options.kept_pressures
+        << (c.options.solver == Solver::chebyshev ? ", by Chebyshev, bounds for sub-steps " : "")
+        << (c.options.solver == Solver::chebyshev ? std::to_string(c.options.bound_period) : "") << ", offset "
+        << c.offset << '\n';
     for (std::size_t n = 0; n < c.cloths.size(); ++n) {
         out << "cloth " << n << ":\n";
         print(c.cloths[n], c.options.regularization_per_triangle, out);

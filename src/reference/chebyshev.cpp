@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "reference/chebyshev.hpp"
+
+#include <apsl/topology.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace apsl::reference {
+namespace {
+
+/// (Σ λ³²)^(1/32) over the eigenvalues of a symmetric matrix with none below 0: the greatest, or up to 1.04 times that.
+template <class Real>
+Real greatest_eigenvalue(const Eigen::Matrix<Real, 3, 3>& M) {
+    const Real scale = M.trace();
+    if (!(scale > Real(0))) return Real(0);
+    Eigen::Matrix<Real, 3, 3> power = M / scale;
+    for (int n = 0; n < 4; ++n) power = (power * power).eval();
+    return scale * std::pow(power.squaredNorm(), Real(1) / Real(32));
+}
+
+}  // namespace
+
+template <class Real>
+void diagonal_bound(const Topology& topology, std::span<const TriangleGeometry<Real>> geometry,
+                    std::span<const Real> inverse_masses, TriangleVector<Real>& bound) {
+    const auto triangles = topology.triangles();
+    std::vector<Eigen::Matrix<Real, 3, 3>> around(topology.vertex_count(), Eigen::Matrix<Real, 3, 3>::Zero());
+    for (std::size_t a = 0; a < triangles.size(); ++a)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t i = triangles[a][k];
+            const Vector3<Real>& g = geometry[a].gradients[k];
+            around[i] += Real(0.5) * inverse_masses[i] * g * g.transpose();
+        }
+    std::vector<Real> greatest(around.size());
+    std::transform(around.begin(), around.end(), greatest.begin(), greatest_eigenvalue<Real>);
+    bound.resize(static_cast<Eigen::Index>(triangles.size()));
+    for (std::size_t a = 0; a < triangles.size(); ++a)
+        bound[static_cast<Eigen::Index>(a)] =
+            greatest[triangles[a][0]] + greatest[triangles[a][1]] + greatest[triangles[a][2]];
+}
+
+template <class Real>
+void chebyshev(const SparseMatrix<Real>& G, const TriangleVector<Real>& bound, const TriangleVector<Real>& b,
+               int products, ChebyshevScratch<Real>& scratch, TriangleVector<Real>& lambda) {
+    auto& [inverse_bound, r, step, product] = scratch;
+    inverse_bound = bound.cwiseInverse();
+    for (Real& inverse : inverse_bound)
+        if (!std::isfinite(inverse)) inverse = Real(0);
+
+    // T_d(σ) = 3 at x = 0; the polynomial swings between ±1/3 from x = low to x = 1.
+    const Real sigma = std::cosh(std::acosh(Real(3)) / static_cast<Real>(products + 1));
+    const Real low = (sigma - Real(1)) / (sigma + Real(1));
+    const Real centre = (Real(1) + low) / Real(2), half_width = (Real(1) - low) / Real(2);
+    Real rho = Real(1) / sigma;
+    r = b;
+    step = inverse_bound.cwiseProduct(r) / centre;
+    lambda = step;
+    for (int k = 0; k < products; ++k) {
+        product.noalias() = G * step;
+        r -= product;
+        const Real next = Real(1) / (Real(2) * sigma - rho);
+        step = (next * rho) * step + (Real(2) * next / half_width) * inverse_bound.cwiseProduct(r);
+        lambda += step;
+        rho = next;
+    }
+}
+
+template void diagonal_bound(const Topology&, std::span<const TriangleGeometry<double>>, std::span<const double>,
+                             TriangleVector<double>&);
+template void diagonal_bound(const Topology&, std::span<const TriangleGeometry<float>>, std::span<const float>,
+                             TriangleVector<float>&);
+template void chebyshev(const SparseMatrix<double>&, const TriangleVector<double>&, const TriangleVector<double>&, int,
+                        ChebyshevScratch<double>&, TriangleVector<double>&);
+template void chebyshev(const SparseMatrix<float>&, const TriangleVector<float>&, const TriangleVector<float>&, int,
+                        ChebyshevScratch<float>&, TriangleVector<float>&);
+
+}  // namespace apsl::reference
