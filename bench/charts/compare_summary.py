@@ -97,7 +97,9 @@ def in_short(run):
         return f"{run['title']}: {knobs_of(run)}"
     first = knobs.get("strain_limiting.first_regularization")
     alpha = f"{first:g} → {last:g}" if first else f"{last:g}"
-    return f"{run['title'].removeprefix('Area preserving').removeprefix(', ') or 'as the paper'}: {alpha}, {count}"
+    period = knobs.get("strain_limiting.bound_period")
+    bound = "" if period is None else ", one bound" if period >= count else f", a bound for {period:g}"
+    return f"{run['title'].removeprefix('Area preserving').removeprefix(', ') or 'as the paper'}: {alpha}, {count}{bound}"
 
 
 def front_rows(results):

@@ -12,11 +12,13 @@ namespace {
 void check_variants(std::uint32_t work_group_size) {
     const MovingCloth cloth = moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1);
     const Parameters parameters{.regularization = 1.3f, .sub_steps = 2, .tolerance = 1e-2f, .max_iterations = 12};
-    for (Options options : variants) {
+    const auto check = [&](Options options) {
         options.work_group_size = work_group_size;
         CAPTURE(variant_name(options));
         check_against_reference(cloth, options, parameters);
-    }
+    };
+    for (const Options& options : variants) check(options);
+    check(by_chebyshev);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ using namespace apsl::test;
 namespace {
 
 std::vector<Cloth> every_kind_of_mesh() {
-    return {make_cloth(grid(17, 15, 1.0, 1.0, Diagonals::alternating), 1),
+    return {make_cloth(grid(9, 11, 1.0, 1.0, Diagonals::alternating), 1),
             make_cloth(grid(6, 5, 1.0, 2.0, Diagonals::random), 2),
             make_cloth(tetrahedron(), 3),
             make_cloth(book(4), 4),
@@ -55,7 +55,7 @@ void check_pressures(const Arrays& arrays, std::size_t c, double rho, int produc
 TEST_CASE("chebyshev_step: the polynomial of the reference, on every kind of mesh", "[chebyshev]") {
     constexpr float rho = 4.0f;  // above the greatest eigenvalue of any of these
     for (const std::uint32_t group : work_group_sizes())
-        for (const float alpha : {3.0f, 1.3f, 1.1f, 1.05f}) {
+        for (const float alpha : {3.0f, 1.3f, 1.1f}) {  // 1, 2 and 4 products
             CAPTURE(group, alpha);
             const Build build{.work_group_size = group, .chebyshev = true};
             Arrays arrays(every_kind_of_mesh(), Matrix::consistent, {.regularization = rho, .sub_steps = 1}, 3);
