@@ -25,9 +25,10 @@ enum class Offender : std::int32_t {
 
 /// What one filter call did to one cloth. The device writes this layout itself (kernels/layout.h).
 struct Stats {
-    std::int32_t sub_steps;         ///< solves done
-    std::int32_t cg_iterations;     ///< over all of them
-    float residual;                 ///< greatest ‖r‖ / ‖b‖ at the end of a solve, norm as in Parameters::tolerance
+    std::int32_t sub_steps;      ///< solves done
+    std::int32_t cg_iterations;  ///< over all of them; by Chebyshev products with the matrix
+    /// Greatest ‖r‖ / ‖b‖ at the end of a solve, norm as in Parameters::tolerance; 0 by Chebyshev, which measures none.
+    float residual;
     float max_area_change;          ///< max |A − A⁰| / A⁰ of what is left behind
     float rms_area_change;          ///< root of the mean of its squares, weighted with A⁰, as mass is
     float initial_max_area_change;  ///< the greatest at x̃ + Δt ṽ, before the first sub-step

@@ -198,7 +198,7 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("strain_limiting": {"execution": "one_group", "apply": "assembled_csr"})",
          "strain_limiting.execution: one_group needs the consistent matrix, matrix_free"},
         {R"("strain_limiting": {"solver": "jacobi"})",
-         "strain_limiting.solver: expected \"conjugate_gradient\" or \"chebyshev\", got \"jacobi\""},
+         "strain_limiting.solver: expected one of conjugate_gradient, chebyshev, got \"jacobi\""},
         {R"("strain_limiting": {"solver": "chebyshev", "matrix": "printed"})",
          "strain_limiting.solver: chebyshev needs the consistent matrix, matrix_free"},
         {R"("strain_limiting": {"solver": "chebyshev", "execution": "one_group"})",
