@@ -24,6 +24,14 @@ double iteration_bound(double alpha, double tolerance) {
     return 0.5 * root * std::log(2.0 * root / tolerance);
 }
 
+// The least α of any cloth in this sub-step.
+double least_regularization(const CallBudget& budget, int sub_step) {
+    const Parameters hardest{.regularization = budget.regularization,
+                             .sub_steps = budget.sub_steps,
+                             .first_regularization = budget.first_regularization};
+    return scheduled_regularization(double{budget.regularization}, hardest, sub_step);
+}
+
 }  // namespace
 
 void CallBudget::add(const Parameters& p) {
@@ -39,18 +47,6 @@ void CallBudget::add(const Parameters& p) {
     regularization = std::min(regularization, p.regularization);
     tolerance = std::min(tolerance, solve_tolerance(p));
 }
-
-namespace {
-
-// The least α of any cloth in this sub-step.
-double least_regularization(const CallBudget& budget, int sub_step) {
-    const Parameters hardest{.regularization = budget.regularization,
-                             .sub_steps = budget.sub_steps,
-                             .first_regularization = budget.first_regularization};
-    return scheduled_regularization(double{budget.regularization}, hardest, sub_step);
-}
-
-}  // namespace
 
 int queued_iterations(std::size_t largest, const CallBudget& budget, int sub_step) {
     const bool bounded = std::min(budget.first_regularization, budget.regularization) > 1.0f && budget.tolerance > 0.0f;

@@ -141,7 +141,8 @@ struct BasicStrainLimiter<Real>::Implementation {
         const int products = chebyshev_products(alpha, parameters.max_iterations);
         const TriangleVector<Real> scale = bound.cwiseProduct(G.diagonal());
         chebyshev(G, scale, area_excess, products, chebyshev_scratch, lambda);
-        if ((stats.sub_steps + 1) % bound_period == 0) bound_matrix(buffers);  // for the next one
+        const int next = stats.sub_steps + 1;
+        if (next < parameters.sub_steps && next % bound_period == 0) bound_matrix(buffers);
         const bool finite = lambda.allFinite();
         return {products, finite ? Real(0) : std::numeric_limits<Real>::quiet_NaN(), true};
     }

@@ -13,15 +13,6 @@ using namespace apsl::test;
 
 namespace {
 
-std::vector<Cloth> every_kind_of_mesh() {
-    return {make_cloth(grid(9, 11, 1.0, 1.0, Diagonals::alternating), 1),
-            make_cloth(grid(6, 5, 1.0, 2.0, Diagonals::random), 2),
-            make_cloth(tetrahedron(), 3),
-            make_cloth(book(4), 4),
-            make_cloth(fan(12), 5),
-            make_cloth(right_triangle(), 6)};
-}
-
 // What the polynomial of the reference makes of the right-hand side, in the scaled unknowns: the stored gradients are
 // those over √(ρ D), with one ρ for all.
 std::vector<double> expected(const Arrays& arrays, std::size_t c, double rho, int products) {

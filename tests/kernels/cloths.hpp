@@ -28,6 +28,9 @@ struct Cloth {
 
 Cloth make_cloth(const Mesh& mesh, std::uint32_t seed);
 
+/// A cloth of each kind of small mesh.
+std::vector<Cloth> every_kind_of_mesh();
+
 /// A zigzag strip of n triangles with edges of about 1 m and n + 2 vertices: any number of triangles, short rows.
 Mesh strip(std::uint32_t triangles);
 

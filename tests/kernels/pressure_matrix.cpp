@@ -18,15 +18,6 @@ constexpr double entry_roundings = 30;
 
 const Matrix matrices[] = {Matrix::consistent, Matrix::printed};
 
-std::vector<Cloth> every_kind_of_mesh() {
-    return {make_cloth(grid(9, 11, 1.0, 1.0, Diagonals::alternating), 1),
-            make_cloth(grid(6, 5, 1.0, 2.0, Diagonals::random), 2),
-            make_cloth(tetrahedron(), 3),
-            make_cloth(book(4), 4),
-            make_cloth(fan(12), 5),
-            make_cloth(right_triangle(), 6)};
-}
-
 void check_values(Arrays& arrays, const Build& build) {
     const std::vector<float> expected = arrays.values.read();  // the reference's, before they are poisoned
     arrays.values.write(poison<float>(expected.size()));
