@@ -19,6 +19,7 @@ static_assert(sizeof(Stats) == sizeof(apsl_stats));
 static_assert(offsetof(Stats, residual) == offsetof(apsl_stats, residual));
 static_assert(offsetof(Stats, status) == offsetof(apsl_stats, status));
 static_assert(offsetof(Stats, offender_index) == offsetof(apsl_stats, offender_index));
+static_assert(offsetof(Stats, greatest_mass_ratio) == offsetof(apsl_stats, greatest_mass_ratio));
 static_assert(std::has_single_bit(sizeof(apsl_parameters)), "clEnqueueFillBuffer takes powers of two");
 static_assert(static_cast<int>(Status::not_converged) == APSL_STATUS_NOT_CONVERGED);
 static_assert(static_cast<int>(Status::worsened) == APSL_STATUS_WORSENED);
@@ -158,13 +159,13 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     if (assembled()) values = buffer(adjacency.columns.size() * sizeof(float));
 
     ordered_rest_areas = zeroed_buffer(triangle_count);
-    const bool regularized = options.regularization_per_triangle || by_chebyshev();
-    ordered_regularization = upload(std::vector<float>(regularized ? triangle_count : 1, 1.0f));
-    if (by_chebyshev()) vertex_bound = buffer(vertex_count * sizeof(float));
+    ordered_regularization = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
+    if (by_chebyshev()) vertex_bounds = buffer(vertex_count * sizeof(float));
     predicted = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
     const std::size_t walking_vertices = options.positions_only ? 1 : vertex_count;
     motion = buffer(walking_vertices * sizeof(cl_float4));
     correction = buffer(walking_vertices * sizeof(cl_float4));
+    start_errors = zeroed_buffer(options.positions_only ? 1 : triangle_count);
     gradients = buffer(triangle_count * gradient_bytes);
     residual = zeroed_buffer(triangle_count);
     damped_diagonal = zeroed_buffer(triangle_count);
@@ -192,12 +193,12 @@ void StrainLimiter::Implementation::create_kernels() {
         set_arguments(filter_in_one_group, 0, cloths, parameters, states, stats, vertex_order, triangle_order,
                       triangles, patches, patch_vertices, local_triangles, corner_offsets, corners, predicted, motion,
                       correction, gradients, residual, damped_diagonal, product, direction, direction_product,
-                      pressures[0], ordered_rest_areas, ordered_regularization);
-        set_argument(filter_in_one_group, 34, cl_uint{triangle_count});
+                      pressures[0], ordered_rest_areas, ordered_regularization, start_errors);
+        set_argument(filter_in_one_group, 35, cl_uint{triangle_count});
         return;
     }
     predict_positions = kernel("predict_positions");
-    set_arguments(predict_positions, 0, cloths, parameters, states, stats, partials, vertex_order, predicted);
+    set_arguments(predict_positions, 0, cloths, parameters, states, stats, partials, vertex_order, predicted, motion);
     begin_call = kernel("begin_call");
     set_arguments(begin_call, 0, parameters, states, stats, partials, groups);
     if (!options.positions_only) {
@@ -209,9 +210,14 @@ void StrainLimiter::Implementation::create_kernels() {
                   ordered_regularization);
     assemble_gradients = kernel("assemble_gradients");
     set_arguments(assemble_gradients, 0, cloths, parameters, states, partials, triangles, predicted, gradients,
-                  residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
+                  residual, damped_diagonal, ordered_rest_areas,
+                  by_chebyshev() ? vertex_bounds : ordered_regularization, start_errors);
+    measure_step = kernel("measure_step");
+    set_arguments(measure_step, 0, cloths, parameters, partials, triangles, predicted, motion, ordered_rest_areas,
+                  start_errors);
     measure_area_change = kernel("measure_area_change");
-    set_arguments(measure_area_change, 0, cloths, parameters, partials, triangles, predicted, ordered_rest_areas);
+    set_arguments(measure_area_change, 0, cloths, parameters, partials, triangles, predicted, motion,
+                  ordered_rest_areas);
     begin_solve = kernel("begin_solve");
     set_arguments(begin_solve, 0, parameters, states, stats, partials, groups);
     end_call = kernel("end_call");
@@ -232,9 +238,8 @@ void StrainLimiter::Implementation::create_kernels() {
 void StrainLimiter::Implementation::create_chebyshev() {
     const auto kernel = [&](const char* name) { return create_kernel(program.get(), name); };
     bound_vertices = kernel("bound_vertices");
-    set_arguments(bound_vertices, 0, cloths, states, corner_offsets, corners, gradients, damped_diagonal, vertex_bound);
-    bound_triangles = kernel("bound_triangles");
-    set_arguments(bound_triangles, 0, cloths, states, triangles, damped_diagonal, vertex_bound, ordered_regularization);
+    set_arguments(bound_vertices, 0, cloths, parameters, states, corner_offsets, corners, gradients, predicted, motion,
+                  vertex_bounds);
     chebyshev_step = kernel("chebyshev_step");
     set_arguments(chebyshev_step, 0, cloths, parameters, states, patches, patch_vertices, local_triangles,
                   corner_offsets, corners, gradients, residual);
@@ -308,20 +313,17 @@ void StrainLimiter::Implementation::bind(const Buffers& buffers) const {
     const BufferView& regularization = buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
     const BufferView& corrected = options.positions_only ? buffers.positions : buffers.velocities;
     if (one_group()) {
-        set(filter_in_one_group, 24, buffers.positions);
-        set(filter_in_one_group, 26, corrected);
-        set(filter_in_one_group, 28, buffers.inverse_masses);
-        set(filter_in_one_group, 30, buffers.rest_areas);
-        set(filter_in_one_group, 32, regularization);
+        set(filter_in_one_group, 25, buffers.positions);
+        set(filter_in_one_group, 27, corrected);
+        set(filter_in_one_group, 29, buffers.inverse_masses);
+        set(filter_in_one_group, 31, buffers.rest_areas);
+        set(filter_in_one_group, 33, regularization);
         return;
     }
-    set(predict_positions, 7, buffers.positions);
-    set(predict_positions, 9, corrected);
-    set(predict_positions, 11, buffers.inverse_masses);
-    if (start_walk.handle) {
-        set(start_walk, 7, buffers.positions);
-        set(start_walk, 9, buffers.velocities);
-    }
+    set(predict_positions, 8, buffers.positions);
+    set(predict_positions, 10, corrected);
+    set(predict_positions, 12, buffers.inverse_masses);
+    if (start_walk.handle) set(start_walk, 7, buffers.velocities);
     set(order_triangle_values, 5, buffers.rest_areas);
     set(order_triangle_values, 7, regularization);
     set(update_velocities, 6, buffers.positions);
@@ -371,7 +373,7 @@ void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, const
 }
 
 void StrainLimiter::Implementation::queue_assembly(CommandSequence& commands, int sub_step) const {
-    set_argument(assemble_gradients, 11, cl_int{sub_step});
+    set_argument(assemble_gradients, 12, cl_int{sub_step});
     launch(commands, assemble_gradients);
     set_argument(begin_solve, 5, cl_int{sub_step});
     launch_one_group(commands, begin_solve);
@@ -407,14 +409,13 @@ void StrainLimiter::Implementation::queue_conjugate_gradient(CommandSequence& co
 
 void StrainLimiter::Implementation::queue_bound(CommandSequence& commands, int sub_step) const {
     if (sub_step == 0) {
-        // Gradients scaled by the diagonal alone.
+        // Directions are all that bound_vertices reads of the gradients: any scale will do.
         const cl_float one = 1.0f;
-        commands.fill(ordered_regularization, &one, sizeof one, 0, triangle_count * sizeof one);
-        set_argument(assemble_gradients, 11, cl_int{0});
+        commands.fill(vertex_bounds, &one, sizeof one, 0, vertex_count * sizeof one);
+        set_argument(assemble_gradients, 12, cl_int{0});
         launch(commands, assemble_gradients);
     }
     launch(commands, bound_vertices);
-    launch(commands, bound_triangles);
 }
 
 void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, const CallBudget& budget,
@@ -437,7 +438,7 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
     launch(commands, predict_positions);
     launch(commands, order_triangle_values);
     if (budget.walks) {
-        launch(commands, measure_area_change);
+        launch(commands, measure_step);
         launch_one_group(commands, begin_call);
         launch(commands, start_walk);
     }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Accepts or rejects the result of a call. Reference: apsl::reference, is_worse.
+#ifndef APSL_ACCEPT_OR_REJECT_H
+#define APSL_ACCEPT_OR_REJECT_H
+
+#include "layout.h"
+
+// |A − A⁰| / A⁰ over the triangles of a cloth.
+typedef struct {
+    float max;
+    float rms;         // weighted with A⁰
+    float capped_rms;  // the same with each triangle's counted as at most 1
+} apsl_area_change;
+
+typedef struct {
+    bool worse;  // the velocities stay as given
+    bool rose;   // the status is worsened
+    bool names;  // the result stands, and the triangle with the greatest area change is named
+} apsl_verdict;
+
+// The capped RMS decides, so that a single triangle does not cost the others their correction.
+APSL_INLINE apsl_verdict judge(apsl_area_change initial, apsl_area_change change) {
+    const bool rose = change.max > initial.max || change.rms > initial.rms || change.capped_rms > initial.capped_rms;
+    const bool at_rest = initial.max <= APSL_AT_REST;
+    apsl_verdict verdict;
+    verdict.worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
+    verdict.rose = rose && !at_rest;
+    verdict.names = !verdict.worse && change.max > initial.max;
+    return verdict;
+}
+
+// The statistics of the state that stands.
+APSL_INLINE void store_area_change(__global apsl_stats* stats, apsl_area_change standing) {
+    stats->max_area_change = standing.max;
+    stats->rms_area_change = standing.rms;
+}
+
+#endif
