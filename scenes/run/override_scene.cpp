@@ -2,6 +2,7 @@
 #include "run/override_scene.hpp"
 
 #include "run/input_error.hpp"
+#include "run/parse_json.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -45,7 +46,9 @@ void replace_other_kinds(Json& document, const std::vector<std::string>& path) {
     for (const std::string& kind : kinds) {
         if (kind != path[1]) document[path[0]].erase(kind);
     }
-    if (path[0] == "mesh" && path[1] != "file") document[path[0]].erase("height");
+    if (path[0] == "mesh" && path[1] != "file") {
+        for (const char* key : {"height", "weld"}) document[path[0]].erase(key);
+    }
 }
 
 }  // namespace
@@ -57,8 +60,8 @@ void override_scene(Json& document, const std::string& assignment) {
     if (equals == std::string::npos || std::find(path.begin(), path.end(), "") != path.end()) {
         throw InputError("--set " + assignment + ": expected path=value, such as strain_limiting.regularization=1.05");
     }
-    Json value = Json::parse(assignment.substr(equals + 1), nullptr, false);
-    if (value.is_discarded()) value = assignment.substr(equals + 1);
+    const std::string text = assignment.substr(equals + 1);
+    Json value = Json::accept(text) ? Json(parse_json(text, "--set " + assignment)) : Json(text);
 
     replace_other_kinds(document, path);
     Json* place = &document;

@@ -3,6 +3,7 @@
 
 #include "run/input_error.hpp"
 #include "run/override_scene.hpp"
+#include "run/parse_json.hpp"
 #include "run/parse_vertices.hpp"
 #include "run/scene_object.hpp"
 
@@ -17,7 +18,6 @@ namespace {
 
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kMaxKeptPressures = 1000;
-constexpr int kMaxDepth = 64;
 
 std::array<std::uint32_t, 2> counts(SceneObject& object, const std::string& key,
                                     const std::array<std::uint32_t, 2>& fallback,
@@ -80,12 +80,15 @@ MeshSource parse_mesh(SceneObject object, const std::filesystem::path& folder) {
     MeshFile source;
     const SceneValue file = object.find("file");
     const SceneValue height = object.find("height");
+    const SceneValue weld = object.find("weld");
     const std::string kind = object.only_one_of({"grid", "tube", "file"});
     if (height.json != nullptr && kind != "file") height.fail("only a mesh from a file is scaled to a height");
+    if (weld.json != nullptr && kind != "file") weld.fail("only a mesh from a file is welded");
     if (kind == "grid") return parse_grid(SceneObject(object.find("grid")));
     if (kind == "tube") return parse_tube(SceneObject(object.find("tube")));
     source.file = folder / file.text();
     if (height.json != nullptr) source.height = height.number(Range::above(0.0));
+    if (weld.json != nullptr) source.weld = weld.number(Range::at_least(0.0));
     return source;
 }
 
@@ -260,31 +263,12 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     return scene;
 }
 
-nlohmann::ordered_json parse_scene_text(std::string_view text, const std::string& file) {
-    // What comes after is recursive: text nested deep enough would use up the stack.
-    const auto check_depth = [&](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
-        if (depth > kMaxDepth)
-            throw InputError(file + ": nested more than " + std::to_string(kMaxDepth) + " deep, expected a scene");
-        return true;
-    };
-    try {
-        return nlohmann::ordered_json::parse(text, check_depth);
-    } catch (const nlohmann::json::exception& error) {
-        std::string reason = error.what();  // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
-        if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
-        for (char& letter : reason) {
-            if (letter == '\n' || letter == '\r') letter = ' ';
-        }
-        throw InputError(file + ": not valid JSON: " + reason);
-    }
-}
-
 nlohmann::ordered_json read_scene_document(const std::filesystem::path& file, std::span<const std::string> overrides) {
     if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such scene file");
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    nlohmann::ordered_json document = parse_scene_text(text, file.string());
+    nlohmann::ordered_json document = parse_json(text, file.string());
     for (const std::string& assignment : overrides) override_scene(document, assignment);
     return document;
 }

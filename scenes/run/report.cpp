@@ -120,6 +120,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
                                 {"device", report.device},
                                 {"vertices", report.vertices},
                                 {"triangles", report.triangles},
+                                {"pieces", {{"count", report.pieces.count}, {"without_pin", report.pieces.without_pin}}},
                                 {"stages", report.stages},
                                 {"device_bytes", report.device_bytes}};
     json["frames"] = nlohmann::ordered_json::array();
@@ -132,6 +133,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
                              {"stage", report.breakdown->stage},
                              {"what", report.breakdown->what}};
     }
+    json["warnings"] = report.warnings;
     json["kernels"] = nlohmann::ordered_json::array();
     for (const KernelReport& kernel : report.kernels) {
         json["kernels"].push_back({{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}});

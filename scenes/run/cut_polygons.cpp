@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "run/cut_polygons.hpp"
+
+#include "pipeline/geometry.hpp"
+#include "run/ear_clipping.hpp"
+#include "run/input_error.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace apsl::scenes {
+namespace {
+
+/// Faces with the same flaw.
+struct Flawed {
+    std::size_t count = 0;
+    std::size_t first = 0;
+
+    void add(std::size_t face) {
+        if (count++ == 0) first = face;
+    }
+    void warn(const PolygonMesh& polygons, const std::string& what, const std::string& then, Mesh& mesh) const {
+        if (count == 0) return;
+        mesh.warnings.push_back(polygons.file + ": " + what + ": " + std::to_string(count) + ", the first in " +
+                                polygons.shown(first) + "; " + then);
+    }
+};
+
+// Takes out what encloses nothing: a vertex that follows itself, and b of a b a. Round the end as well.
+void take_out_spikes(std::span<const std::uint32_t> corners, std::vector<std::uint32_t>& polygon) {
+    polygon.clear();
+    for (const std::uint32_t vertex : corners) {
+        if (!polygon.empty() && polygon.back() == vertex) continue;
+        if (polygon.size() >= 2 && polygon[polygon.size() - 2] == vertex) {
+            polygon.pop_back();
+            continue;
+        }
+        polygon.push_back(vertex);
+    }
+    std::size_t begin = 0;
+    while (polygon.size() - begin >= 2) {
+        if (polygon.back() == polygon[begin]) {
+            polygon.pop_back();
+        } else if (polygon[polygon.size() - 2] == polygon[begin]) {
+            polygon.pop_back();  // the spike's end; the rest closes the ring
+        } else if (polygon.back() == polygon[begin + 1]) {
+            ++begin;
+        } else {
+            break;
+        }
+    }
+    polygon.erase(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(begin));
+}
+
+void check_areas(const PolygonMesh& polygons, std::size_t face, const Mesh& mesh, std::size_t first_triangle) {
+    for (std::size_t k = first_triangle; k < mesh.triangles.size(); ++k) {
+        if (triangle_area(mesh.positions, mesh.triangles[k]) > 0.0) continue;
+        throw InputError(polygons.where(face) + "a face without an area, or with vertices in one place (" +
+                         polygons.shown(face) + "); delete it, or merge the vertices: \"weld\" in mesh");
+    }
+}
+
+}  // namespace
+
+Mesh cut_polygons(PolygonMesh polygons) {
+    Mesh mesh;
+    mesh.positions = std::move(polygons.positions);
+    Flawed empty, crossing;
+    std::vector<std::uint32_t> polygon;
+    for (std::size_t face = 0; face < polygons.faces.size(); ++face) {
+        take_out_spikes(polygons.corners(face), polygon);
+        if (polygon.size() < 3) {
+            empty.add(face);
+            continue;
+        }
+        const std::size_t first_triangle = mesh.triangles.size();
+        const PolygonCut cut = cut_polygon(mesh.positions, polygon, mesh.triangles);
+        if (cut == PolygonCut::too_long) {
+            throw InputError(polygons.where(face) + "a concave face of " + std::to_string(polygon.size()) +
+                             " vertices, too many to be cut here; cut it into smaller ones in the mesh");
+        }
+        if (cut == PolygonCut::crossing) crossing.add(face);
+        check_areas(polygons, face, mesh, first_triangle);
+    }
+    empty.warn(polygons, "faces that enclose nothing, for a vertex comes twice", "they are left out", mesh);
+    crossing.warn(polygons, "faces that cross themselves", "their triangles overlap, cut them in the mesh", mesh);
+    return mesh;
+}
+
+}  // namespace apsl::scenes
