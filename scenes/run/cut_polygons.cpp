@@ -5,6 +5,7 @@
 #include "run/ear_clipping.hpp"
 #include "run/input_error.hpp"
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,7 +56,12 @@ void take_out_spikes(std::span<const std::uint32_t> corners, std::vector<std::ui
 
 void check_areas(const PolygonMesh& polygons, std::size_t face, const Mesh& mesh, std::size_t first_triangle) {
     for (std::size_t k = first_triangle; k < mesh.triangles.size(); ++k) {
-        if (triangle_area(mesh.positions, mesh.triangles[k]) > 0.0) continue;
+        const double area = triangle_area(mesh.positions, mesh.triangles[k]);
+        if (area > 0.0 && std::isfinite(area)) continue;
+        if (!(area <= 0.0)) {
+            throw InputError(polygons.where(face) + "a face with an area too great for a number (" +
+                             polygons.shown(face) + "); scale the mesh: \"height\" in mesh");
+        }
         throw InputError(polygons.where(face) + "a face without an area, or with vertices in one place (" +
                          polygons.shown(face) + "); delete it, or merge the vertices: \"weld\" in mesh");
     }
@@ -84,7 +90,8 @@ Mesh cut_polygons(PolygonMesh polygons) {
         check_areas(polygons, face, mesh, first_triangle);
     }
     empty.warn(polygons, "faces that enclose nothing, for a vertex comes twice", "they are left out", mesh);
-    crossing.warn(polygons, "faces that cross themselves", "their triangles overlap, cut them in the mesh", mesh);
+    crossing.warn(polygons, "faces that cross or pinch themselves", "their triangles may overlap, cut them in the mesh",
+                  mesh);
     return mesh;
 }
 

@@ -11,7 +11,7 @@ namespace apsl::scenes {
 
 enum class PolygonCut {
     exact,     ///< the triangles cover the polygon once
-    crossing,  ///< a fan of a polygon that crosses itself or has no area: its triangles may overlap
+    crossing,  ///< a fan of a polygon that crosses or pinches itself, or has no area: triangles may overlap
     too_long,  ///< none: a concave polygon of more corners than can be cut in a second
 };
 

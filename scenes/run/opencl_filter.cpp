@@ -42,7 +42,8 @@ void check_range(const std::vector<double>& values, std::size_t each, const std:
         if (size <= Limits::max() && (size >= Limits::min() || each > 1 || size == 0.0)) continue;
         std::ostringstream text;
         text << what << " " << i / each << " is " << values[i]
-             << ", beyond the 32 bits that the device holds; scale the mesh, or run with --backend reference";
+             << ", beyond the 32 bits that the device holds; change the mesh's size or masses, or run with --backend "
+                "reference";
         throw InputError(text.str());
     }
 }
@@ -94,8 +95,8 @@ OpenClFilter::OpenClFilter(const OpenClDevice& device, const ClothState& cloth, 
       uploaded_velocities_(to_float(cloth.velocities)),
       filtered_velocities_(cloth.velocities.size()) {
     check_range(cloth.positions, 3, "a coordinate (m) of vertex");
-    check_range(cloth.inverse_masses, 1, "the inverse mass (1/kg) of vertex");
     check_range(cloth.rest_areas, 1, "the rest area (m²) of triangle");
+    check_range(cloth.inverse_masses, 1, "the inverse mass (1/kg) of vertex");
     positions_ = make_buffer(uploaded_positions_, "positions");
     velocities_ = make_buffer(uploaded_velocities_, "velocities");
     inverse_masses_ = make_buffer(to_float(cloth.inverse_masses), "inverse masses");

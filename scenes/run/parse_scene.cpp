@@ -5,12 +5,11 @@
 #include "run/override_scene.hpp"
 #include "run/parse_json.hpp"
 #include "run/parse_vertices.hpp"
+#include "run/read_file.hpp"
 #include "run/scene_object.hpp"
 
 #include <apsl/error.hpp>
 
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 namespace apsl::scenes {
@@ -86,7 +85,9 @@ MeshSource parse_mesh(SceneObject object, const std::filesystem::path& folder) {
     if (weld.json != nullptr && kind != "file") weld.fail("only a mesh from a file is welded");
     if (kind == "grid") return parse_grid(SceneObject(object.find("grid")));
     if (kind == "tube") return parse_tube(SceneObject(object.find("tube")));
-    source.file = folder / file.text();
+    const std::string name = file.text();
+    if (name.empty() || name.find('\0') != std::string::npos) file.expected("the name of a file");
+    source.file = folder / name;
     if (height.json != nullptr) source.height = height.number(Range::above(0.0));
     if (weld.json != nullptr) source.weld = weld.number(Range::at_least(0.0));
     return source;
@@ -153,6 +154,7 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     }
     const SceneValue regularization = object.find("regularization");
     if (regularization.json != nullptr && regularization.json->is_array()) {
+        if (regularization.json->empty()) regularization.expected("a number, or one for each triangle");
         for (const SceneValue& entry : regularization.entries()) {
             settings.regularization.push_back(static_cast<float>(entry.number(Range::at_least(1.0))));
         }
@@ -264,10 +266,7 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
 }
 
 nlohmann::ordered_json read_scene_document(const std::filesystem::path& file, std::span<const std::string> overrides) {
-    if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such scene file");
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string text = read_file(file, "scene");
     nlohmann::ordered_json document = parse_json(text, file.string());
     for (const std::string& assignment : overrides) override_scene(document, assignment);
     return document;

@@ -63,8 +63,8 @@ PlyHeader take_ply_header(std::string_view& contents, const std::string& file) {
     const std::string_view whole = contents;
     std::string_view first = take_line(contents);
     // Where lines end with \r alone, a \n behind the last one belongs to the numbers.
-    const bool ends_with_return = whole.substr(first.size(), 2).starts_with('\r') &&
-                                  !whole.substr(first.size(), 2).ends_with('\n');
+    const bool ends_with_return =
+        whole.substr(first.size(), 2).starts_with('\r') && !whole.substr(first.size(), 2).ends_with('\n');
     if (take_word(first) != "ply" || !take_word(first).empty()) refuse_ply(file, "expected ply in the first line");
     while (!contents.empty()) {
         const std::string_view before = contents;

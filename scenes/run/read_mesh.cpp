@@ -4,14 +4,13 @@
 #include "run/byte_order_mark.hpp"
 #include "run/cut_polygons.hpp"
 #include "run/input_error.hpp"
+#include "run/read_file.hpp"
 #include "run/read_obj.hpp"
 #include "run/read_ply.hpp"
 #include "run/weld.hpp"
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 
@@ -36,16 +35,12 @@ void scale_to_height(PolygonMesh& mesh, double height) {
 
 Mesh read_mesh(const MeshFile& source) {
     const std::string file = source.file.string();
-    if (!std::filesystem::is_regular_file(source.file)) throw InputError(file + ": no such mesh file");
-    std::ifstream stream(source.file, std::ios::binary);
-    if (!stream) throw InputError(file + ": cannot be opened for reading");
-
+    const std::string bytes = read_file(source.file, "mesh");
     std::string extension = source.file.extension().string();
     for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     if (extension != ".obj" && extension != ".ply") {
         throw InputError(file + ": unknown kind of mesh file, expected .obj or .ply");
     }
-    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     const std::string_view contents = without_byte_order_mark(bytes, file);
     PolygonMesh polygons = extension == ".obj" ? read_obj(contents, file) : read_ply(contents, file);
     if (polygons.positions.empty()) throw InputError(file + ": has no vertices");

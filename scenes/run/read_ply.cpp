@@ -146,9 +146,9 @@ void add_strips(const std::vector<std::int64_t>& indices, PolygonMesh& mesh) {
 PolygonMesh read_ply(std::string_view contents, const std::string& file) {
     const PlyHeader header = take_ply_header(contents, file);
     PlyNumbers numbers(header.format, contents, file);
-    const bool has_faces =
-        std::any_of(header.elements.begin(), header.elements.end(),
-                    [](const PlyElement& element) { return element.name == "face" && element.count > 0; });
+    const bool has_faces = std::any_of(header.elements.begin(), header.elements.end(), [](const PlyElement& element) {
+        return element.name == "face" && element.count > 0;
+    });
     PolygonMesh mesh;
     mesh.file = file;
     for (const PlyElement& element : header.elements) {

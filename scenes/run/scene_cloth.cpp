@@ -9,6 +9,7 @@
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 
@@ -62,9 +63,9 @@ void note_start_inside(const Scene& scene, const ClothState& cloth, std::vector<
         if (inside.vertices == 0) continue;
         char depth[32];
         std::snprintf(depth, sizeof depth, "%.3g", inside.depth);
-        warnings.push_back(scene.file + ": colliders[" + std::to_string(k) + "]: vertices that start inside: " +
-                           std::to_string(inside.vertices) + ", by up to " + depth +
-                           " m; they are led out within the first second, move the cloth or the collider");
+        warnings.push_back(scene.file + ": colliders[" + std::to_string(k) +
+                           "]: vertices that start inside: " + std::to_string(inside.vertices) + ", by up to " + depth +
+                           " m; they are led out slowly, move the cloth or the collider");
     }
 }
 
@@ -74,7 +75,11 @@ void change_masses(const Scene& scene, const Mesh& mesh, ClothState& cloth) {
         const std::string where = scene.file + ": masses[" + std::to_string(k) + "]";
         for (const std::uint32_t vertex : select_vertices(scene.masses[k].selection, mesh, where)) {
             cloth.masses[vertex] *= scene.masses[k].factor;
+            if (cloth.inverse_masses[vertex] == 0.0) continue;
             cloth.inverse_masses[vertex] /= scene.masses[k].factor;
+            if (!std::isnormal(cloth.masses[vertex]) || !std::isnormal(cloth.inverse_masses[vertex]))
+                throw InputError(where + ".factor: leaves vertex " + std::to_string(vertex) +
+                                 " without a mass that can be counted with, expected a factor nearer to 1");
         }
     }
 }

@@ -44,7 +44,7 @@ inline std::string quoted(std::string_view text) {
 /// become 0 or infinite, as by strtod.
 template <class Number>
 bool parse_number(std::string_view word, Number& number) {
-    if (word.starts_with('+')) word.remove_prefix(1);
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
     const char* const word_end = word.data() + word.size();
     const auto [end, error] = std::from_chars(word.data(), word_end, number);
     if constexpr (std::is_same_v<Number, double>) {

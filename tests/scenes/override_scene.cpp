@@ -60,7 +60,8 @@ TEST_CASE("set: that leads nowhere says where it stopped") {
         {"a..b=1", "--set a..b=1: expected path=value"},
         {"a.b=1", "--set a.b=1: there is no \"b\" in 3"},
         {"list[5]=1", "--set list[5]=1: there is no \"5\" in [1]"},
-        {"a={\"b\": [{\"c\": 1, \"c\": 2}]}", "--set a={\"b\": [{\"c\": 1, \"c\": 2}]}: b[0].c: the same key comes twice"},
+        {"a={\"b\": [{\"c\": 1, \"c\": 2}]}",
+         "--set a={\"b\": [{\"c\": 1, \"c\": 2}]}: b[0].c: the same key comes twice"},
         {"a=" + std::string(65, '[') + std::string(65, ']'), "--set a=" + std::string(65, '[')},
         {"list.x=1", "--set list.x=1: there is no \"x\" in [1]"},
     }));

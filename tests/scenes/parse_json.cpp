@@ -10,9 +10,7 @@ using apsl::test::input_error_of;
 
 TEST_CASE("text nested too deep is refused, however deep") {
     const std::string deep(1000000, '[');
-    const auto error = [](const std::string& text) {
-        return input_error_of([&] { parse_json(text, "scene.json"); });
-    };
+    const auto error = [](const std::string& text) { return input_error_of([&] { parse_json(text, "scene.json"); }); };
     CHECK(error(deep) == "scene.json: nested more than 64 deep, expected a scene");
     CHECK(error(std::string(64, '[') + std::string(64, ']')).empty());
     CHECK_THAT(error("{\"mesh\":"), Catch::StartsWith("scene.json: not valid JSON: parse error at line 1"));

@@ -153,7 +153,8 @@ TEST_CASE("a mesh file is looked for beside the scene") {
     CHECK(absolute.file == "/a/b.obj");
     CHECK_FALSE(absolute.height.has_value());
     CHECK(absolute.weld == 0.0);
-    const MeshFile relative = std::get<MeshFile>(parse(R"({"mesh": {"file": "b.obj", "height": 2, "weld": 0.001}})").mesh);
+    const MeshFile relative =
+        std::get<MeshFile>(parse(R"({"mesh": {"file": "b.obj", "height": 2, "weld": 0.001}})").mesh);
     CHECK(relative.file == "folder/b.obj");
     CHECK(relative.height == 2.0);
     CHECK(relative.weld == 0.001);
@@ -186,6 +187,8 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
         {R"("strain_limiting": {"regularization": [1, 0.5]})",
          "strain_limiting.regularization[1]: expected a number ≥ 1, got 0.5"},
+        {R"("strain_limiting": {"regularization": []})",
+         "strain_limiting.regularization: expected a number, or one for each triangle, got []"},
         {R"("strain_limiting": {"tolerance": 1})", "strain_limiting.tolerance: expected a number ≥ 0 and < 1, got 1"},
         {R"("strain_limiting": {"sub_steps": -1})", "strain_limiting.sub_steps: expected a whole number from 0"},
         {R"("strain_limiting": {"max_iterations": 0})",
@@ -254,6 +257,8 @@ TEST_CASE("what is wrong with a mesh is named by its path") {
          "mesh.grid.diagonals: expected one of uniform, alternating, random, got \"zigzag\""},
         {R"({"tube": {"segments": [2, 4]}})", "mesh.tube.segments[0]: expected a whole number from 3"},
         {R"({"tube": {"radius": [0.1, -0.1]}})", "mesh.tube.radius[1]: expected a number > 0"},
+        {R"({"file": ""})", "mesh.file: expected the name of a file, got \"\""},
+        {R"({"file": "\u0000x.obj"})", "mesh.file: expected the name of a file, got \"\\u0000x.obj\""},
         {R"({"file": 3})", "mesh.file: expected a text, got 3"},
         {R"({"grid": {}, "weld": 1})", "mesh.weld: only a mesh from a file is welded"},
         {R"({"file": "x.obj", "weld": -1})", "mesh.weld: expected a number ≥ 0, got -1"},
