@@ -5,7 +5,9 @@
 #include "run/ear_clipping.hpp"
 #include "run/input_error.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <compare>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +69,25 @@ void check_areas(const PolygonMesh& polygons, std::size_t face, const Mesh& mesh
     }
 }
 
+/// A triangle whichever way round and from whichever corner, and the face it is of.
+struct Side {
+    Triangle vertices;
+    std::size_t face;
+
+    auto operator<=>(const Side&) const = default;
+};
+
+// Faces with a triangle that an earlier one has too, as exporters of two-sided cloth write them.
+Flawed repeated_faces(std::vector<Side>& sides) {
+    std::sort(sides.begin(), sides.end());
+    std::vector<std::size_t> faces;
+    for (std::size_t k = 1; k < sides.size(); ++k)
+        if (sides[k].vertices == sides[k - 1].vertices) faces.push_back(sides[k].face);
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces.empty() ? Flawed{} : Flawed{.count = faces.size(), .first = faces[0]};
+}
+
 }  // namespace
 
 Mesh cut_polygons(PolygonMesh polygons) {
@@ -74,6 +95,7 @@ Mesh cut_polygons(PolygonMesh polygons) {
     mesh.positions = std::move(polygons.positions);
     Flawed empty, crossing;
     std::vector<std::uint32_t> polygon;
+    std::vector<Side> sides;
     for (std::size_t face = 0; face < polygons.faces.size(); ++face) {
         take_out_spikes(polygons.corners(face), polygon);
         if (polygon.size() < 3) {
@@ -88,10 +110,16 @@ Mesh cut_polygons(PolygonMesh polygons) {
         }
         if (cut == PolygonCut::crossing) crossing.add(face);
         check_areas(polygons, face, mesh, first_triangle);
+        for (std::size_t k = first_triangle; k < mesh.triangles.size(); ++k) {
+            sides.push_back({mesh.triangles[k], face});
+            std::sort(sides.back().vertices.begin(), sides.back().vertices.end());
+        }
     }
     empty.warn(polygons, "faces that enclose nothing, for a vertex comes twice", "they are left out", mesh);
     crossing.warn(polygons, "faces that cross or pinch themselves", "their triangles may overlap, cut them in the mesh",
                   mesh);
+    repeated_faces(sides).warn(polygons, "faces that come twice", "each weighs and counts, delete them from the mesh",
+                               mesh);
     return mesh;
 }
 

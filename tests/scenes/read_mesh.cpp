@@ -256,6 +256,15 @@ TEST_CASE("vertices that a face names twice: closed polygons and spikes are read
                                          "1, the first in face 1, 0 1 0; they are left out"});
 }
 
+TEST_CASE("faces that come twice, on either side, are warned of") {
+    const TemporaryFolder folder;
+    const std::string file = folder.write("twosided.obj", kSquare + "f 1 2 3 4\nf 4 1 3\nf 3 2 1\nf 1 2 4\n");
+    CHECK(read_mesh(file).triangles.size() == 5);
+    CHECK(read_mesh(file).warnings ==
+          std::vector<std::string>{file + ": faces that come twice: 2, the first in line 6, 4 1 3; each weighs and "
+                                          "counts, delete them from the mesh"});
+}
+
 TEST_CASE("PLY: triangle strips turn every other triangle round, -1 begins anew, what names a vertex twice leads on") {
     const TemporaryFolder folder;
     const std::string header =
