@@ -28,6 +28,16 @@ std::vector<std::string> split_path(std::string path) {
     return keys;
 }
 
+// Anything else would stop whoever writes the scene down, late.
+bool is_utf8(const std::string& text) {
+    try {
+        nlohmann::json(text).dump();
+        return true;
+    } catch (const nlohmann::json::type_error&) {
+        return false;
+    }
+}
+
 std::optional<std::size_t> as_index(const std::string& key) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
@@ -60,6 +70,11 @@ void override_scene(Json& document, const std::string& assignment) {
     if (equals == std::string::npos || std::find(path.begin(), path.end(), "") != path.end()) {
         throw InputError("--set " + assignment + ": expected path=value, such as strain_limiting.regularization=1.05");
     }
+    if (path.size() > kMaxSceneDepth) {
+        throw InputError("--set " + path[0] + "...: a path of " + std::to_string(path.size()) +
+                         " keys, expected at most " + std::to_string(kMaxSceneDepth));
+    }
+    if (!is_utf8(assignment)) throw InputError("--set " + assignment + ": expected text in UTF-8");
     const std::string text = assignment.substr(equals + 1);
     Json value = Json::accept(text) ? Json(parse_json(text, "--set " + assignment)) : Json(text);
 

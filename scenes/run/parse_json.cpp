@@ -4,7 +4,6 @@
 #include "run/byte_order_mark.hpp"
 #include "run/input_error.hpp"
 
-#include <cstddef>
 #include <set>
 #include <vector>
 
@@ -14,8 +13,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Event = Json::parse_event_t;
 
-constexpr std::size_t kMaxDepth = 64;
-
 /// Looks at a text's objects and arrays as they open and close. The library itself keeps the last of two equal keys.
 class Structure {
 public:
@@ -23,9 +20,9 @@ public:
 
     void meet(Event event, const Json& parsed) {
         if (event == Event::object_start || event == Event::array_start) {
-            // What comes after is recursive: text nested deep enough would use up the stack.
-            if (open_.size() == kMaxDepth)
-                throw InputError(name_ + ": nested more than " + std::to_string(kMaxDepth) + " deep, expected a scene");
+            if (open_.size() == kMaxSceneDepth)
+                throw InputError(name_ + ": nested more than " + std::to_string(kMaxSceneDepth) +
+                                 " deep, expected a scene");
             open_.push_back({.is_array = event == Event::array_start, .keys = {}, .key = {}, .index = 0});
             return;
         }

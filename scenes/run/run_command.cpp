@@ -22,7 +22,8 @@ void warn(const std::string& line) {
 
 void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report) {
     WholeFile output(file);
-    output.write(report.dump(1));
+    // The name of a scene may be any bytes.
+    output.write(report.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     output.write("\n");
     output.commit();
 }

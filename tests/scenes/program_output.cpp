@@ -253,6 +253,16 @@ TEST_CASE("stand-alone springs that had to be added are warned of") {
     CHECK(run_apsl(command + "random").errors.empty());
 }
 
+TEST_CASE("a scene whose name is no UTF-8 leaves its report all the same") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("sc\xe9ne.json", R"({"mesh": {"grid": {"vertices": [5, 5]}}, "frames": 1})");
+    const std::string report_file = (folder.path() / "report.json").string();
+    const ProgramRun run = run_apsl("run " + scene + " --report " + report_file);
+    CHECK(run.exit_code == 0);
+    CHECK_THAT(run.output, Catch::Contains("status                 ok"));
+    CHECK_THAT(read_json(report_file)["scene"].get<std::string>(), Catch::EndsWith("/sc\xef\xbf\xbdne.json"));
+}
+
 TEST_CASE("a mesh in pieces that lie side by side is warned of on the screen and in the report, until it is welded") {
     const TemporaryFolder folder;
     folder.write("soup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n");
