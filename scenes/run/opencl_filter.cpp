@@ -91,12 +91,12 @@ OpenClFilter::OpenClFilter(const OpenClDevice& device, const ClothState& cloth, 
       context_(make_context(device.id)),
       queue_(make_queue(context_.get(), device.id, profile)),
       limiter_(context_.get(), device.id, cloth.topology, options_for(settings)),
-      uploaded_positions_(to_float_around(origin_for(cloth.positions), cloth.positions)),
-      uploaded_velocities_(to_float(cloth.velocities)),
       filtered_velocities_(cloth.velocities.size()) {
     check_range(cloth.positions, 3, "a coordinate (m) of vertex");
     check_range(cloth.rest_areas, 1, "the rest area (m²) of triangle");
     check_range(cloth.inverse_masses, 1, "the inverse mass (1/kg) of vertex");
+    uploaded_positions_ = to_float_around(origin_for(cloth.positions), cloth.positions);
+    uploaded_velocities_ = to_float(cloth.velocities);
     positions_ = make_buffer(uploaded_positions_, "positions");
     velocities_ = make_buffer(uploaded_velocities_, "velocities");
     inverse_masses_ = make_buffer(to_float(cloth.inverse_masses), "inverse masses");
