@@ -11,7 +11,8 @@
 namespace apsl::scenes {
 namespace {
 
-/// A cube of space, twice the distance wide: what lies within the distance of a vertex lies in at most eight of them.
+/// A cube of space, eight times the distance wide: what lies within the distance of a vertex mostly lies in one of
+/// them, at most in eight.
 using Cell = std::array<double, 3>;  // whole numbers, as doubles so that no place is too far away
 
 struct CellHash {
@@ -40,19 +41,27 @@ bool within(std::span<const double> positions, std::size_t a, std::size_t b, dou
 std::vector<std::uint32_t> first_within(std::span<const double> positions, double distance) {
     constexpr std::uint32_t none = ~0u;
     const std::size_t vertex_count = positions.size() / 3;
-    const double width = 2.0 * distance;
+    const double width = 8.0 * distance;
     std::unordered_map<Cell, std::uint32_t, CellHash> newest;  // of a cell; the others follow in `older`
     std::vector<std::uint32_t> older(vertex_count, none);
     std::vector<std::uint32_t> first(vertex_count);
     newest.reserve(vertex_count);
     for (std::size_t v = 0; v < vertex_count; ++v) {
+        Cell low, high;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            low[axis] = cell_coordinate(positions[3 * v + axis] - distance, width);
+            high[axis] = cell_coordinate(positions[3 * v + axis] + distance, width);
+        }
         std::uint32_t found = none;
-        for (int corner = 0; corner < 8; ++corner) {
-            Cell cell;
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            Cell cell = low;
+            bool is_new = true;
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                const double side = (corner >> axis) & 1 ? distance : -distance;
-                cell[axis] = cell_coordinate(positions[3 * v + axis] + side, width);
+                if (((corner >> axis) & 1) == 0) continue;
+                cell[axis] = high[axis];
+                is_new = is_new && high[axis] != low[axis];
             }
+            if (!is_new) continue;
             const auto entry = newest.find(cell);
             for (std::uint32_t u = entry == newest.end() ? none : entry->second; u != none; u = older[u])
                 if (u < found && within(positions, u, v, distance)) found = u;
