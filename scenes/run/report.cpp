@@ -115,13 +115,15 @@ std::string status_name(Status status) {
 }
 
 nlohmann::ordered_json to_json(const RunReport& report) {
-    nlohmann::ordered_json json{{"scene", report.scene},
-                                {"backend", report.backend},
-                                {"device", report.device},
-                                {"vertices", report.vertices},
-                                {"triangles", report.triangles},
-                                {"stages", report.stages},
-                                {"device_bytes", report.device_bytes}};
+    nlohmann::ordered_json json{
+        {"scene", report.scene},
+        {"backend", report.backend},
+        {"device", report.device},
+        {"vertices", report.vertices},
+        {"triangles", report.triangles},
+        {"pieces", {{"count", report.pieces.count}, {"without_pin", report.pieces.without_pin}}},
+        {"stages", report.stages},
+        {"device_bytes", report.device_bytes}};
     json["frames"] = nlohmann::ordered_json::array();
     for (const FrameReport& frame : report.frames) json["frames"].push_back(to_json(frame));
     json["summary"] = to_json(summarize(report.frames));
@@ -132,6 +134,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
                              {"stage", report.breakdown->stage},
                              {"what", report.breakdown->what}};
     }
+    json["warnings"] = report.warnings;
     json["kernels"] = nlohmann::ordered_json::array();
     for (const KernelReport& kernel : report.kernels) {
         json["kernels"].push_back({{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}});

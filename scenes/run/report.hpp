@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/over_stretch.hpp"
+#include "run/pieces.hpp"
 
 #include <apsl/stats.hpp>
 
@@ -64,11 +65,13 @@ struct RunReport {
     std::string device;
     std::size_t vertices = 0;
     std::size_t triangles = 0;
+    Pieces pieces;
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step
     std::size_t device_bytes = 0;
     std::vector<FrameReport> frames;
     OverStretchReport over_stretch;
     std::optional<Breakdown> breakdown;
+    std::vector<std::string> warnings;
     std::vector<KernelReport> kernels;  ///< only of a profiled run
 };
 

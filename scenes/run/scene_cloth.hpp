@@ -3,6 +3,7 @@
 
 #include "pipeline/cloth_state.hpp"
 #include "pipeline/pins.hpp"
+#include "run/pieces.hpp"
 #include "run/scene.hpp"
 
 #include <string>
@@ -14,6 +15,7 @@ namespace apsl::scenes {
 struct SceneCloth {
     ClothState state;
     std::vector<PinGroup> pins;
+    Pieces pieces;
     std::vector<std::string> warnings;  ///< one line each, with what to do
 };
 

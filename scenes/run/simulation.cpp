@@ -46,8 +46,14 @@ Simulation::Simulation(const Scene& scene, SceneCloth cloth, FilterStage filter,
       keep_area_changes_(keep_area_changes) {
     Pins pins(cloth_, std::move(cloth.pins));
     if (pins.moving()) moving_pins_ = std::move(pins);
+    starts_inside_ = is_inside();
     make_springs(scene);
     name_stages(scene);
+}
+
+bool Simulation::is_inside() const {
+    return std::any_of(colliders_.begin(), colliders_.end(),
+                       [&](const Collider& collider) { return start_inside(cloth_, collider).vertices > 0; });
 }
 
 void Simulation::make_springs(const Scene& scene) {
@@ -133,7 +139,8 @@ void Simulation::run_step(int step, FrameReport& report) {
 
     const Stopwatch after_filter;
     if (!colliders_.empty()) {
-        resolve_collisions(cloth_, colliders_, time_step_);
+        resolve_collisions(cloth_, colliders_, time_step_, starts_inside_);
+        if (starts_inside_) starts_inside_ = is_inside();
         report.collision_seconds += after_filter.seconds();
     }
     advance_positions(cloth_, time_step_);

@@ -29,6 +29,9 @@ std::string summary_text(const RunReport& report) {
     const bool filtered = report.backend != "none";
     std::string text = format("%s: %zu vertices, %zu triangles, %zu frames\n", report.scene.c_str(), report.vertices,
                               report.triangles, report.frames.size());
+    if (report.pieces.count > 1)
+        text += format("  pieces                 %zu, %zu of them without a pin\n", report.pieces.count,
+                       report.pieces.without_pin);
     text += "  stages                 " + joined(report.stages) + "\n";
     if (filtered) {
         text += "  strain limiting on     " + report.backend + ": " + report.device;
