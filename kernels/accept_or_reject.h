@@ -18,10 +18,17 @@ typedef struct {
     bool names;  // the result stands, and the triangle with the greatest area change is named
 } apsl_verdict;
 
+// A greatest area change that rounding makes in a cloth at rest: positions up to `extent` from the origin are off by
+// their resolution, in triangles that have `rest_area` on average.
+APSL_INLINE float at_rest_up_to(float extent, float rest_area) {
+    const float rounding = rest_area > 0.0f ? APSL_POSITION_RESOLUTION * extent / sqrt(rest_area) : 0.0f;
+    return isfinite(rounding) ? fmax(rounding, APSL_AT_REST) : APSL_AT_REST;
+}
+
 // The capped RMS decides, so that a single triangle does not cost the others their correction.
-APSL_INLINE apsl_verdict judge(apsl_area_change initial, apsl_area_change change) {
+APSL_INLINE apsl_verdict judge(apsl_area_change initial, apsl_area_change change, float at_rest_up_to) {
     const bool rose = change.max > initial.max || change.rms > initial.rms || change.capped_rms > initial.capped_rms;
-    const bool at_rest = initial.max <= APSL_AT_REST;
+    const bool at_rest = initial.max <= at_rest_up_to;
     apsl_verdict verdict;
     verdict.worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
     verdict.rose = rose && !at_rest;

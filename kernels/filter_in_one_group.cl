@@ -41,10 +41,12 @@ APSL_KERNEL void filter_in_one_group(
                          inverse_masses + inverse_mass_offset);
     const float bad_vertices = group_sum(vertex_sums.bad, scratch);
     const float root_masses = group_sum(vertex_sums.root_masses, scratch);
+    const float extent = group_max(vertex_sums.extent, scratch);
     greatest_mass = greatest_effective_mass(root_masses, group_sum(vertex_sums.movable, scratch));
     order_values(cloths[c], parameters[c].enabled, triangle_order, ordered_rest_areas, ordered_regularization,
                  rest_areas + rest_area_offset, regularization + regularization_offset);
     apsl_area_change change, initial;
+    float rest_area = 0.0f;  // m², on average
     float start_not_finite = 0.0f;
     // A cloth that is off goes round once, with no triangle.
     for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
@@ -67,6 +69,7 @@ APSL_KERNEL void filter_in_one_group(
         const bool on_the_way = started && sub_steps < walked_sub_steps(parameters[c]);
         going_on = !broken && sub_steps < parameters[c].sub_steps &&
                    (on_the_way || change.max > parameters[c].target_area_change);
+        rest_area = measured / (float)cloths[c].triangle_count;
         if (!started) initial = broken ? area_change_of(0.0f, 0.0f, 0.0f, 0.0f) : change;
         // On a walk the first round only looks at its end; the second assembles where it begins.
         const bool starting = !started && going_on && walked_sub_steps(parameters[c]) > 0;
@@ -116,7 +119,7 @@ APSL_KERNEL void filter_in_one_group(
     const apsl_raised_masses raised = raised_masses(cloths[c], parameters[c].raises_masses, predicted, motion);
     const float raised_vertices = group_sum(raised.count, scratch);
     const float mass_ratio = group_max(raised.greatest_ratio, scratch);
-    const apsl_verdict verdict = judge(initial, change);
+    const apsl_verdict verdict = judge(initial, change, at_rest_up_to(extent, rest_area));
     if (get_local_id(0) == 0) {
         const bool off = !parameters[c].enabled;
         states[c].adaptive_factor = factor;

@@ -79,6 +79,8 @@ typedef struct {
 
 // A greatest area change up to which a cloth is at rest: 32-bit positions tell no better.
 #define APSL_AT_REST 1e-5f
+// Of the greatest coordinate: what moves a vertex of a 32-bit position, twice over.
+#define APSL_POSITION_RESOLUTION 2.4e-7f
 
 // Where a cloth's solve stands. Each field is written by one work-group in a launch that does not read it elsewhere.
 typedef struct {
@@ -111,7 +113,8 @@ typedef struct {
 #define APSL_PARTIAL_MOVABLE 13        // vertices
 #define APSL_PARTIAL_RAISED 14         // vertices that weigh more than given
 #define APSL_PARTIAL_MASS_RATIO 15     // their greatest mass over the one given
-#define APSL_PARTIAL_KINDS 16
+#define APSL_PARTIAL_EXTENT 16         // greatest |coordinate| at x̃ + Δt ṽ, m
+#define APSL_PARTIAL_KINDS 17
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSL_TRIANGLE_ALIGNMENT 16

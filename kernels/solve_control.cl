@@ -76,6 +76,8 @@ APSL_KERNEL void end_call(__global const apsl_cloth* cloths, __global apsl_solve
     const apsl_area_change change = area_change(partials, groups, scratch);
     const bool bad_vertices = sum_partials(partials, APSL_PARTIAL_BAD_VERTICES, groups, scratch) > 0.0f;
     const float not_finite = sum_partials(partials, APSL_PARTIAL_NOT_FINITE, groups, scratch);
+    const float measured = sum_partials(partials, APSL_PARTIAL_MEASURED, groups, scratch);
+    const float extent = max_partials(partials, APSL_PARTIAL_EXTENT, groups, scratch);
     const float raised = sum_partials(partials, APSL_PARTIAL_RAISED, groups, scratch);
     const float mass_ratio = max_partials(partials, APSL_PARTIAL_MASS_RATIO, groups, scratch);
     const bool diverged = bad_vertices || not_finite > 0.0f || stats[c].status == APSL_STATUS_DIVERGED;
@@ -86,7 +88,8 @@ APSL_KERNEL void end_call(__global const apsl_cloth* cloths, __global apsl_solve
     initial.max = stats[c].initial_max_area_change;
     initial.rms = stats[c].initial_rms_area_change;
     initial.capped_rms = states[c].initial_capped_rms;
-    const apsl_verdict verdict = judge(initial, change);
+    const apsl_verdict verdict =
+        judge(initial, change, at_rest_up_to(extent, measured / (float)cloths[c].triangle_count));
     name_offender(stats + c, search_for(diverged, bad_vertices, verdict, change.max), cloths[c], vertex_order,
                   triangle_order, triangles, predicted, rest_areas, scratch);
     group_memory_barrier();  // all have read the status

@@ -78,6 +78,7 @@ typedef struct {
     float bad;          // vertices
     float root_masses;  // Σ √m of movable vertices
     float movable;      // vertices
+    float extent;       // greatest |coordinate|, m
 } apsl_vertex_sums;
 
 // predicted = (x̃ + Δt ṽ, w), and before a walk motion = (x̃, w), in the limiter's order of vertices. Returns this
@@ -87,7 +88,7 @@ APSL_INLINE apsl_vertex_sums predict_vertices(apsl_cloth cloth, bool active, flo
                                               __global float4* motion, __global const float* positions,
                                               __global const float* velocities, __global const float* inverse_masses) {
     const apsl_range range = share_of(cloth.vertex_count, active);
-    apsl_vertex_sums sums = {0.0f, 0.0f, 0.0f};
+    apsl_vertex_sums sums = {0.0f, 0.0f, 0.0f, 0.0f};
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, i = vertex_order[place];
         const float w = inverse_masses[(ulong)i * APSL_INVERSE_MASS_STRIDE];
@@ -97,6 +98,7 @@ APSL_INLINE apsl_vertex_sums predict_vertices(apsl_cloth cloth, bool active, flo
         sums.bad += is_bad_vertex(x) ? 1.0f : 0.0f;
         sums.root_masses += w > 0.0f ? rsqrt(w) : 0.0f;
         sums.movable += w > 0.0f ? 1.0f : 0.0f;
+        sums.extent = fmax(sums.extent, fmax(fabs(x.x), fmax(fabs(x.y), fabs(x.z))));
     }
     return sums;
 }
