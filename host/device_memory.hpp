@@ -15,10 +15,15 @@ class DeviceMemory {
 public:
     /// `scratch` with a null buffer: allocated. `context` null: only counted, as if cut from a place of the caller's.
     DeviceMemory(cl_context context, cl_device_id device, const DeviceFacts& facts, const BufferView& scratch);
+    DeviceMemory(const DeviceMemory&) = delete;
+    DeviceMemory& operator=(const DeviceMemory&) = delete;
+    ~DeviceMemory();
 
     /// `contents` may be null, and is copied before this returns. Throws Error: unsupported where the device has no
     /// buffer of that size, invalid_argument where the caller's place is too small, opencl.
     BufferHandle allocate(std::size_t size, const void* contents);
+    /// After the last allocation: from then on every queue sees the contents. Waits.
+    void finish_uploads();
     /// Of all buffers so far, without gaps.
     std::size_t bytes() const { return bytes_; }
     /// Likewise, cut from a place at any offset.
@@ -26,11 +31,13 @@ public:
 
 private:
     BufferHandle cut(std::size_t size, const void* contents);
+    void upload(const BufferHandle& handle, std::size_t size, const void* contents);
 
     cl_context context_;
     cl_device_id device_;
     DeviceFacts facts_;
     BufferView scratch_;
+    QueueHandle uploads_;      // into scratch_, made with the first of them
     std::size_t alignment_;    // of a sub-buffer, bytes
     std::size_t aligned_ = 0;  // bytes of all buffers, each rounded up
     std::size_t bytes_ = 0;

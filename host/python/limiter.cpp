@@ -30,7 +30,7 @@ Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle devic
     cl_int code = CL_SUCCESS;
     context_ = host::ContextHandle(clCreateContext(nullptr, 1, &id, nullptr, nullptr, &code));
     host::check(code, "apsl: creating an OpenCL context");
-    queue_ = QueueHandle(clCreateCommandQueue(context_.get(), id, 0, &code));
+    queue_ = host::QueueHandle(clCreateCommandQueue(context_.get(), id, 0, &code));
     host::check(code, "apsl: creating a command queue");
     limiter_.emplace(context_.get(), id, topology, options);
     positions_ = make_buffer(3 * vertex_count_);
