@@ -7,6 +7,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 struct apsl_topology {
@@ -55,6 +56,8 @@ apsl_result guarded(const Action& action) noexcept {
     } catch (const apsl::Error& error) {
         return fail(static_cast<apsl_result>(error.code()), error.what());
     } catch (const std::bad_alloc&) {
+        return fail(APSL_ERROR_OUT_OF_MEMORY, "out of host memory");
+    } catch (const std::length_error&) {  // a vector's, of more elements than there are addresses
         return fail(APSL_ERROR_OUT_OF_MEMORY, "out of host memory");
     } catch (const std::exception& error) {
         return fail(APSL_ERROR_INTERNAL, error.what());

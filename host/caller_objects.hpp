@@ -7,8 +7,8 @@
 #include <span>
 
 // What a caller hands over, looked at before anything is built or queued: drivers accept some of what they cannot use,
-// or end the process over it. All of these throw Error(invalid_argument) that names the object, opencl where it cannot be
-// asked.
+// or end the process over it. All of these throw Error(invalid_argument) that names the object, opencl where it cannot
+// be asked.
 namespace apsl::host {
 
 /// Not null, and the device is one of the context's.

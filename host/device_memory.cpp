@@ -45,15 +45,30 @@ BufferHandle DeviceMemory::allocate(std::size_t size, const void* contents) {
     return handle;
 }
 
+std::size_t DeviceMemory::next_origin() const {
+    return round_up(scratch_.offset, alignment_) + aligned_;
+}
+
+void DeviceMemory::keep_clear_of(const DeviceMemory& other) {
+    if (other.scratch_.buffer != scratch_.buffer) return;
+    taken_begin_ = round_up(other.scratch_.offset, alignment_);
+    taken_end_ = other.next_origin();
+}
+
 BufferHandle DeviceMemory::cut(std::size_t size, const void* contents) {
     std::size_t there = 0;
     check(clGetMemObjectInfo(scratch_.buffer, CL_MEM_SIZE, sizeof there, &there, nullptr),
           "asking the scratch memory for its size");
-    const cl_buffer_region region{round_up(scratch_.offset, alignment_) + aligned_, size};
+    const cl_buffer_region region{next_origin(), size};
     if (scratch_.offset > there || region.origin > there || there - region.origin < size)
         throw Error(ErrorCode::invalid_argument, "scratch holds " + std::to_string(there) + " bytes with offset " +
                                                      std::to_string(scratch_.offset) +
                                                      ", expected required_scratch_bytes() from there on");
+    if (region.origin < taken_end_ && region.origin + size > taken_begin_)
+        throw Error(ErrorCode::invalid_argument, "scratch with offset " + std::to_string(scratch_.offset) +
+                                                     " overlaps the limiter's present memory, bytes " +
+                                                     std::to_string(taken_begin_) + " to " +
+                                                     std::to_string(taken_end_) + " of the same buffer");
     cl_int status = CL_SUCCESS;
     BufferHandle handle(
         clCreateSubBuffer(scratch_.buffer, CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &status));

@@ -19,6 +19,8 @@ public:
     DeviceMemory& operator=(const DeviceMemory&) = delete;
     ~DeviceMemory();
 
+    /// From here on allocate() throws Error(invalid_argument) where it would touch a place of `other`'s.
+    void keep_clear_of(const DeviceMemory& other);
     /// `contents` may be null, and is copied before this returns. Throws Error: unsupported where the device has no
     /// buffer of that size, invalid_argument where the caller's place is too small, opencl.
     BufferHandle allocate(std::size_t size, const void* contents);
@@ -30,6 +32,8 @@ public:
     std::size_t required() const { return aligned_ + alignment_; }
 
 private:
+    /// Where the buffer of `size` bytes that comes next begins in scratch_.
+    std::size_t next_origin() const;
     BufferHandle cut(std::size_t size, const void* contents);
     void upload(const BufferHandle& handle, std::size_t size, const void* contents);
 
@@ -37,9 +41,10 @@ private:
     cl_device_id device_;
     DeviceFacts facts_;
     BufferView scratch_;
-    QueueHandle uploads_;      // into scratch_, made with the first of them
-    std::size_t alignment_;    // of a sub-buffer, bytes
-    std::size_t aligned_ = 0;  // bytes of all buffers, each rounded up
+    std::size_t taken_begin_ = 0, taken_end_ = 0;  // bytes of scratch_'s buffer that are another's
+    QueueHandle uploads_;                          // into scratch_, made with the first of them
+    std::size_t alignment_;                        // of a sub-buffer, bytes
+    std::size_t aligned_ = 0;                      // bytes of all buffers, each rounded up
     std::size_t bytes_ = 0;
 };
 

@@ -66,6 +66,7 @@ StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_
                                               const Options& requested, std::span<const std::byte> program_binary,
                                               const BufferView& scratch, const Implementation* built)
     : Implementation(the_context, the_device, built ? built->facts : device_facts(the_device), scratch) {
+    if (built) memory.keep_clear_of(built->memory);
     const Adjacency adjacency = plan(topologies, requested);
     if (built && adjacency.max_patch_vertices <= built->patch_vertex_room)
         share_program(*built);

@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include "devices.hpp"
 #include "opencl_error.hpp"
+#include "process.hpp"
 
 namespace apsl::python {
 namespace {
@@ -57,6 +58,7 @@ void Limiter::upload(const host::BufferHandle& buffer, const float* values, std:
 
 py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle inverse_masses, py::handle rest_areas,
                          const py::kwargs& arguments) {
+    enter_opencl();
     const Array<float> given_positions = vectors<float>(positions, "positions", vertex_count_);
     const Array<float> given_velocities = vectors<float>(velocities, "velocities", vertex_count_);
     const Array<float> given_masses = numbers<float>(inverse_masses, "inverse_masses", vertex_count_);

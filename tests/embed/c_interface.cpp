@@ -79,6 +79,8 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     last_error_says("triangles is null");
     CHECK(apsl_topology_create(bad, 1, 3, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
     CHECK(apsl_topology_create(nullptr, 0, 3, &topology) == APSL_ERROR_INVALID_MESH);
+    CHECK(apsl_topology_create(bad, SIZE_MAX, 3, &topology) == APSL_ERROR_OUT_OF_MEMORY);
+    CHECK(topology == nullptr);
 
     const CTopology good(cloth);
     const apsl_topology* const cloths[] = {good.topology, nullptr};

@@ -104,8 +104,8 @@ void check_flags(const Options& options, std::span<const View> views) {
         const std::string buffer = name;
         for (const auto& unreadable : {write_only, part_of(write_only, 0), part_of(write_only, CL_MEM_WRITE_ONLY)})
             check_invalid(buffer + " is CL_MEM_WRITE_ONLY, expected a buffer that kernels may read", with(unreadable));
-        for (const auto& unwritable : {read_only, part_of(read_only, 0), part_of(memory(CL_MEM_READ_WRITE),
-                                                                                CL_MEM_READ_ONLY)}) {
+        for (const auto& unwritable :
+             {read_only, part_of(read_only, 0), part_of(memory(CL_MEM_READ_WRITE), CL_MEM_READ_ONLY)}) {
             if (written)
                 check_invalid(buffer + " is CL_MEM_READ_ONLY, expected a buffer that kernels may write",
                               with(unwritable));
@@ -174,6 +174,25 @@ TEST_CASE("scratch memory that cannot be cut and filled is refused, by the const
     CHECK(filter(made, CallerBuffers({&cloth(), 1}, {}), {&parameters, 1})[0].status == Status::ok);
 }
 
+TEST_CASE("a rebuild into the limiter's present scratch memory is refused, and harms nothing there", "[embed]") {
+    const std::size_t needed = StrainLimiter::required_scratch_bytes(device().id, {&cloth().topology, 1});
+    const Owned<cl_mem> scratch = memory(CL_MEM_READ_WRITE, device().context, 3 * needed);
+    const BufferView middle{scratch.get(), needed};
+    StrainLimiter made(device().context, device().id, cloth().topology, {}, {}, middle);
+    // Clear of the present memory at first, into it with its last bytes; and the other way round.
+    for (const std::size_t offset : {needed / 2, needed, needed + needed / 2})
+        CHECK_THROWS_WITH(made.rebuild(cloth().topology, {scratch.get(), offset}),
+                          Catch::Contains("overlaps the limiter's present memory"));
+    const Parameters parameters;
+    const CallerBuffers buffers({&cloth(), 1}, {}), expected({&cloth(), 1}, {});
+    StrainLimiter fresh = limiter();
+    filter(fresh, expected, {&parameters, 1});
+    filter(made, buffers, {&parameters, 1});
+    CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
+    CHECK_NOTHROW(made.rebuild(cloth().topology, {scratch.get(), 2 * needed}));
+    CHECK_NOTHROW(made.rebuild(cloth().topology, {scratch.get(), 0}));
+}
+
 namespace {
 
 /// Every entry point that takes a queue and events must refuse these, in C++ and in C.
@@ -183,9 +202,8 @@ void check_refused(StrainLimiter& made, apsl_limiter* in_c, const std::string& w
     const Buffers views = buffers.views();
     std::vector<Stats> stats(1);
     check_invalid(what, [&] { clReleaseEvent(made.enqueue(queue, views, Parameters{}, wait_list)); });
-    check_invalid(what, [&] {
-        clReleaseEvent(made.enqueue_rest_areas(queue, views.positions, views.rest_areas, wait_list));
-    });
+    check_invalid(
+        what, [&] { clReleaseEvent(made.enqueue_rest_areas(queue, views.positions, views.rest_areas, wait_list)); });
     const int reads = opencl_calls().reads;
     check_invalid(what, [&] { clReleaseEvent(made.read_stats(queue, stats, wait_list)); });
 

@@ -39,6 +39,7 @@ TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]"
                   options({.matrix = Matrix::printed, .execution = Execution::one_group}));
     check_invalid("execution is one_group, which needs the consistent matrix, matrix-free",
                   options({.apply = Apply::assembled_csr, .execution = Execution::one_group}));
+    check_invalid("kept_pressures is 4294967295, expected at most 65536", options({.kept_pressures = UINT32_MAX}));
     check_invalid("bound_period is 0, expected at least 1", options({.bound_period = 0}));
     check_invalid("unknown solver", options({.solver = static_cast<Solver>(2)}));
     check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",

@@ -39,7 +39,8 @@ private:
 
 }  // namespace
 
-TEST_CASE("a call right after each of 200 rebuilds in poisoned scratch memory does what it should", "[embed][scratch]") {
+TEST_CASE("a call right after each of 200 rebuilds in poisoned scratch memory does what it should",
+          "[embed][scratch]") {
     const MovingCloth cloths[] = {moving_cloth(tetrahedron(), 1),
                                   moving_cloth(grid(3, 3, 1.0, 1.0, Diagonals::alternating), 2),
                                   moving_cloth(grid(5, 5, 1.0, 1.0, Diagonals::alternating), 3),
@@ -50,8 +51,8 @@ TEST_CASE("a call right after each of 200 rebuilds in poisoned scratch memory do
         std::size_t needed = 0;
         std::vector<std::vector<float>> expected;
         for (const MovingCloth& cloth : cloths) {
-            needed = std::max(needed,
-                              StrainLimiter::required_scratch_bytes(device().id, {&cloth.topology, 1}, options));
+            needed =
+                std::max(needed, StrainLimiter::required_scratch_bytes(device().id, {&cloth.topology, 1}, options));
             StrainLimiter alone(device().context, device().id, cloth.topology, options);
             const CallerBuffers buffers({&cloth, 1}, options);
             filter(alone, buffers, {&parameters, 1});
