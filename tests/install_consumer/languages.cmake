@@ -17,7 +17,7 @@ foreach(standard c++11 c++17 c++20)
   compile(c_interface.cpp ${CXX_COMPILER} -std=${standard})
 endforeach()
 
-set(headers error parameters stats strain_limiter topology)
+set(headers error parameters reference stats strain_limiter topology)
 foreach(header IN LISTS headers)
   set(content "#include <apsl/${header}.hpp>\nint main() {}\n")
   compile(${header}.cpp ${CXX_COMPILER} -std=c++20 -fno-exceptions -fno-rtti)
