@@ -112,8 +112,8 @@ public:
     /// opencl.
     /// `program_binary`: what program_binary() gave, tried in place of compiling; see program_binary_use().
     /// `scratch`: a place in a buffer of the caller's, itself no sub-buffer, CL_MEM_READ_WRITE without a CL_MEM_HOST_
-    /// flag, with required_scratch_bytes() from its offset on, which is then all the device memory used; nobody else may
-    /// write there while the limiter lives. Null: the limiter allocates its own.
+    /// flag, with required_scratch_bytes() from its offset on, which is then all the device memory used; nobody else
+    /// may write there while the limiter lives. Null: the limiter allocates its own.
     StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
                   const Options& options = {}, std::span<const std::byte> program_binary = {},
                   const BufferView& scratch = {});
