@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "limiter_implementation.hpp"
 
+#include "caller_objects.hpp"
 #include "device_parameters.hpp"
 #include "limiter_options.hpp"
 #include "opencl_error.hpp"
@@ -32,19 +33,6 @@ constexpr std::size_t gradient_bytes = 32;
 
 [[noreturn]] void invalid(const std::string& what) {
     throw Error(ErrorCode::invalid_argument, what);
-}
-
-void check_view(const BufferView& view, std::size_t floats, const char* name) {
-    if (!view.buffer) invalid(std::string(name) + " is null");
-    if (view.offset % sizeof(float) != 0)
-        invalid(std::string(name) + " has offset " + std::to_string(view.offset) + ", expected a multiple of 4 bytes");
-    std::size_t size = 0;
-    check(clGetMemObjectInfo(view.buffer, CL_MEM_SIZE, sizeof size, &size, nullptr), "asking a buffer for its size");
-    const std::size_t needed = floats * sizeof(float);
-    // Subtracted rather than added: an offset near the end of the range must not wrap round.
-    if (view.offset > size || size - view.offset < needed)
-        invalid(std::string(name) + " holds " + std::to_string(size) + " bytes, expected at least " +
-                std::to_string(needed) + " from offset " + std::to_string(view.offset) + " on");
 }
 
 /// Floats from the first number of the first vertex to the last of the last.
@@ -79,12 +67,14 @@ StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_
                                               const Options& requested, std::span<const std::byte> program_binary,
                                               const BufferView& scratch, const Implementation* built)
     : Implementation(the_context, the_device, built ? built->facts : device_facts(the_device), scratch) {
+    if (built) memory.keep_clear_of(built->memory);
     const Adjacency adjacency = plan(topologies, requested);
     if (built && adjacency.max_patch_vertices <= built->patch_vertex_room)
         share_program(*built);
     else
         create_program(adjacency.max_patch_vertices, program_binary);
     create_buffers(adjacency);
+    memory.finish_uploads();
     create_kernels();
 }
 
@@ -289,18 +279,22 @@ std::size_t StrainLimiter::Implementation::position_floats() const {
 }
 
 void StrainLimiter::Implementation::check_buffers(const Buffers& buffers) const {
-    check_view(buffers.positions, position_floats(), "buffers.positions");
+    const auto check = [&](const BufferView& view, std::size_t floats, Access access, const char* name) {
+        check_view(view, floats, access, context, name);
+    };
+    check(buffers.positions, position_floats(), options.positions_only ? Access::read_and_write : Access::read,
+          "buffers.positions");
     if (!options.positions_only)
-        check_view(buffers.velocities,
-                   vector_extent(vertex_count, options.velocity_stride, options.velocity_component_stride),
-                   "buffers.velocities");
+        check(buffers.velocities,
+              vector_extent(vertex_count, options.velocity_stride, options.velocity_component_stride),
+              Access::read_and_write, "buffers.velocities");
     else if (buffers.velocities.buffer)
         invalid("buffers.velocities is given, but Options::positions_only is on");
-    check_view(buffers.inverse_masses, std::size_t{vertex_count - 1} * options.inverse_mass_stride + 1,
-               "buffers.inverse_masses");
-    check_view(buffers.rest_areas, rest_area_count, "buffers.rest_areas");
+    check(buffers.inverse_masses, std::size_t{vertex_count - 1} * options.inverse_mass_stride + 1, Access::read,
+          "buffers.inverse_masses");
+    check(buffers.rest_areas, rest_area_count, Access::read, "buffers.rest_areas");
     if (options.regularization_per_triangle)
-        check_view(buffers.regularization, rest_area_count, "buffers.regularization");
+        check(buffers.regularization, rest_area_count, Access::read, "buffers.regularization");
     else if (buffers.regularization.buffer)
         invalid("buffers.regularization is given, but Options::regularization_per_triangle is off");
 }
@@ -470,6 +464,7 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
                     ", expected 0: Options::solver is chebyshev, which has no iterations to go by");
         budget.add(as_run(p));
     }
+    check_queue(queue, wait_list, context, device);
     check_buffers(buffers);
     bind(buffers);
 
@@ -485,8 +480,9 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
 cl_event StrainLimiter::Implementation::enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions,
                                                            const BufferView& areas,
                                                            std::span<const cl_event> wait_list) {
-    check_view(rest_positions, position_floats(), "rest_positions");
-    check_view(areas, rest_area_count, "rest_areas");
+    check_queue(queue, wait_list, context, device);
+    check_view(rest_positions, position_floats(), Access::read, context, "rest_positions");
+    check_view(areas, rest_area_count, Access::write, context, "rest_areas");
     set_arguments(rest_areas, 4, rest_positions.buffer, cl_ulong{rest_positions.offset / sizeof(float)}, areas.buffer,
                   cl_ulong{areas.offset / sizeof(float)});
     CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <apsl/cxx20.hpp>
+
 #include <cstdint>
 
 namespace apsl {

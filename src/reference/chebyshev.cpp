@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reference/chebyshev.hpp"
 
+#include "finite.hpp"
+
 #include <apsl/topology.hpp>
 
 #include <algorithm>
@@ -62,7 +64,7 @@ void chebyshev(const SparseMatrix<Real>& G, const TriangleVector<Real>& bound, c
     auto& [inverse_bound, r, step, product] = scratch;
     inverse_bound = bound.cwiseInverse();
     for (Real& inverse : inverse_bound)
-        if (!std::isfinite(inverse)) inverse = Real(0);
+        if (!is_finite(inverse)) inverse = Real(0);
 
     // T_d(σ) = 3 at x = 0; the polynomial swings between ±1/3 from x = low to x = 1.
     const Real sigma = std::cosh(std::acosh(Real(3)) / static_cast<Real>(products + 1));

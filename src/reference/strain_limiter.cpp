@@ -2,6 +2,7 @@
 //
 // Algorithm 1: predict, solve for the pressures, displace, repeat; only the corrections go into the velocities.
 
+#include "finite.hpp"
 #include "reference/adaptive_regularization.hpp"
 #include "reference/area_change.hpp"
 #include "reference/chebyshev.hpp"
@@ -21,7 +22,6 @@
 #include <apsl/reference.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -46,14 +46,14 @@ void check(const Topology& topology, const Buffers<Real>& buffers) {
 
 template <class Real>
 bool all_finite(std::span<const Real> numbers) {
-    return std::all_of(numbers.begin(), numbers.end(), [](Real number) { return std::isfinite(number); });
+    return std::all_of(numbers.begin(), numbers.end(), [](Real number) { return is_finite(number); });
 }
 
 /// The first vertex with a number that is not finite, or the count of vertices.
 template <class Real>
 std::size_t first_bad_vertex(std::span<const Real> coordinates) {
     std::size_t n = 0;
-    while (n < coordinates.size() && std::isfinite(coordinates[n])) ++n;
+    while (n < coordinates.size() && is_finite(coordinates[n])) ++n;
     return n / 3;
 }
 
@@ -318,7 +318,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             if (at_the_end && change.max <= target) break;
 
             const SolveResult<Real> result = solve(buffers, parameters);
-            if (!std::isfinite(result.relative_residual)) return;
+            if (!is_finite(result.relative_residual)) return;
             displace(buffers.inverse_masses, parameters);
             prepare_next(buffers, parameters);
             ++stats.sub_steps;

@@ -90,7 +90,7 @@ FAULTS = (
           catch("counts of OpenCL references", "ci", "apsl_embed_tests", "embed", "an enqueue that fails*"),
           r"events"),
     Fault("the last error is shared between threads", "host/c_interface.cpp",
-          "thread_local std::string message;", "static std::string message;",
+          "thread_local std::array<char, 4096> last_error{};", "static std::array<char, 4096> last_error{};",
           TSAN, r"ThreadSanitizer: data race"),
     Fault("a constant in double precision", "kernels/vertex_motion.h",
           "moved * (1.0f / time_step)", "moved * (float)(1.0000000001 / time_step)",
