@@ -36,6 +36,22 @@ APSL_INLINE apsl_verdict judge(apsl_area_change initial, apsl_area_change change
     return verdict;
 }
 
+// The area change at x̃ + Δt ṽ, kept for the end of the call; none where it is not finite.
+APSL_INLINE void store_initial(__global apsl_solve_state* state, __global apsl_stats* stats, apsl_area_change change,
+                               bool finite) {
+    stats->initial_max_area_change = finite ? change.max : 0.0f;
+    stats->initial_rms_area_change = finite ? change.rms : 0.0f;
+    state->initial_capped_rms = finite ? change.capped_rms : 0.0f;
+}
+
+APSL_INLINE apsl_area_change stored_initial(__global const apsl_solve_state* state, __global const apsl_stats* stats) {
+    apsl_area_change initial;
+    initial.max = stats->initial_max_area_change;
+    initial.rms = stats->initial_rms_area_change;
+    initial.capped_rms = state->initial_capped_rms;
+    return initial;
+}
+
 // The statistics of the state that stands.
 APSL_INLINE void store_area_change(__global apsl_stats* stats, apsl_area_change standing) {
     stats->max_area_change = standing.max;

@@ -61,6 +61,14 @@ APSL_INLINE apsl_area_change area_change_of(float max, float squared, float capp
     return change;
 }
 
+// By a work-group that has all triangles of a cloth; there are barriers inside.
+APSL_INLINE apsl_area_change area_change_in_group(apsl_area_sums sums, __local float* scratch) {
+    const float squared = group_sum(sum_of_lanes(sums.squared_change), scratch);
+    const float capped = group_sum(sum_of_lanes(sums.capped_change), scratch);
+    const float measured = group_sum(sum_of_lanes(sums.measured), scratch);
+    return area_change_of(group_max(max_of_lanes(sums.max_change), scratch), squared, capped, measured);
+}
+
 APSL_INLINE void store_area_partials(apsl_area_sums sums, __global float* partials, __local float* scratch) {
     store_partial(partials, APSL_PARTIAL_MAX_CHANGE, group_max(max_of_lanes(sums.max_change), scratch));
     store_partial(partials, APSL_PARTIAL_SQUARED_CHANGE, group_sum(sum_of_lanes(sums.squared_change), scratch));

@@ -5,6 +5,7 @@
 #define APSL_EFFECTIVE_MASS_H
 
 #include "layout.h"
+#include "work_group.h"
 
 #define APSL_MASS_PER_STIFFNESS 2.0f
 #define APSL_STIFFNESS_KEPT 0.9f
@@ -27,6 +28,26 @@ APSL_INLINE float effective_inverse_mass(float given, float stiffness, float gre
 APSL_INLINE float share_taken(float given, float effective, float stiffness, float greatest) {
     const float ratio = effective * fmin(stiffness, fmax(1.0f / given, greatest));
     return ratio > 1.0f ? 1.0f / ratio : 1.0f;
+}
+
+typedef struct {
+    float count;           // vertices that weigh more than given
+    float greatest_ratio;  // w over w', 1 where there are none
+} apsl_raised_masses;
+
+// This work-item's. `motion` holds w.
+APSL_INLINE apsl_raised_masses raised_masses(apsl_cloth cloth, bool active, __global const float4* predicted,
+                                             __global const float4* motion) {
+    const apsl_range range = share_of(cloth.vertex_count, active);
+    apsl_raised_masses raised = {0.0f, 1.0f};
+    for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
+        const float effective = predicted[cloth.vertex_begin + v].w, given = motion[cloth.vertex_begin + v].w;
+        if (effective < given) {
+            raised.count += 1.0f;
+            raised.greatest_ratio = fmax(raised.greatest_ratio, given / effective);
+        }
+    }
+    return raised;
 }
 
 #endif

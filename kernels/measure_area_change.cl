@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Area change at the predicted positions. Reference: apsl::reference, area change.
+#include "effective_mass.h"
 #include "layout.h"
 #include "triangle_assembly.h"
-#include "vertex_motion.h"
 #include "work_group.h"
 
 // What a call leaves behind, and the vertices that weighed more than given.

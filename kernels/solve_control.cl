@@ -15,15 +15,6 @@ APSL_INLINE apsl_area_change area_change(__global float* partials, uint groups, 
     return area_change_of(greatest, squared, capped, measured);
 }
 
-// Area change at x̃ + Δt ṽ; none where it is not finite.
-APSL_INLINE void store_initial(__global apsl_solve_state* state, __global apsl_stats* stats, apsl_area_change change,
-                               float not_finite) {
-    const bool finite = !(not_finite > 0.0f);
-    stats->initial_max_area_change = finite ? change.max : 0.0f;
-    stats->initial_rms_area_change = finite ? change.rms : 0.0f;
-    state->initial_capped_rms = finite ? change.capped_rms : 0.0f;
-}
-
 // Before a walk: the area change that the whole step would have, whether there is anything to do about it, and the
 // greatest effective mass.
 APSL_KERNEL void begin_call(__global const apsl_parameters* parameters, __global apsl_solve_state* states,
@@ -36,7 +27,7 @@ APSL_KERNEL void begin_call(__global const apsl_parameters* parameters, __global
     const float movable = sum_partials(partials, APSL_PARTIAL_MOVABLE, groups, scratch);
     if (get_local_id(0) != 0 || parameters[c].walked == 0) return;
     states[c].greatest_mass = greatest_effective_mass(root_masses, movable);
-    store_initial(states + c, stats + c, change, not_finite);
+    store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     if (not_finite > 0.0f) stats[c].status = APSL_STATUS_DIVERGED;
     if (not_finite > 0.0f || change.max <= parameters[c].target_area_change) states[c].stopped = 1;
 }
@@ -51,7 +42,7 @@ APSL_KERNEL void begin_solve(__global const apsl_parameters* parameters, __globa
     const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN, groups, scratch);
     if (get_local_id(0) != 0 || states[c].stopped) return;
     const int walked = parameters[c].walked;
-    if (sub_step == 0 && walked == 0) store_initial(states + c, stats + c, change, not_finite);
+    if (sub_step == 0 && walked == 0) store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     const bool broken = not_finite > 0.0f || !isfinite(residual);
     // On the way the areas are not those of the end of the step.
     const bool done = sub_step >= walked && change.max <= parameters[c].target_area_change;
@@ -82,12 +73,9 @@ APSL_KERNEL void end_call(__global const apsl_cloth* cloths, __global apsl_solve
     const float mass_ratio = max_partials(partials, APSL_PARTIAL_MASS_RATIO, groups, scratch);
     const bool diverged = bad_vertices || not_finite > 0.0f || stats[c].status == APSL_STATUS_DIVERGED;
     const bool none = stats[c].sub_steps == 0;
-    if (none && get_local_id(0) == 0) store_initial(states + c, stats + c, change, not_finite);
+    if (none && get_local_id(0) == 0) store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     group_memory_barrier();
-    apsl_area_change initial;
-    initial.max = stats[c].initial_max_area_change;
-    initial.rms = stats[c].initial_rms_area_change;
-    initial.capped_rms = states[c].initial_capped_rms;
+    const apsl_area_change initial = stored_initial(states + c, stats + c);
     const apsl_verdict verdict =
         judge(initial, change, at_rest_up_to(extent, measured / (float)cloths[c].triangle_count));
     name_offender(stats + c, search_for(diverged, bad_vertices, verdict, change.max), cloths[c], vertex_order,

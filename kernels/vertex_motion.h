@@ -183,26 +183,6 @@ APSL_INLINE void walk_vertices(apsl_cloth cloth, bool active, apsl_walk walk, __
     }
 }
 
-typedef struct {
-    float count;           // vertices that weigh more than given
-    float greatest_ratio;  // w over w', 1 where there are none
-} apsl_raised_masses;
-
-// This work-item's. `motion` holds w.
-APSL_INLINE apsl_raised_masses raised_masses(apsl_cloth cloth, bool active, __global const float4* predicted,
-                                             __global const float4* motion) {
-    const apsl_range range = share_of(cloth.vertex_count, active);
-    apsl_raised_masses raised = {0.0f, 1.0f};
-    for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
-        const float effective = predicted[cloth.vertex_begin + v].w, given = motion[cloth.vertex_begin + v].w;
-        if (effective < given) {
-            raised.count += 1.0f;
-            raised.greatest_ratio = fmax(raised.greatest_ratio, given / effective);
-        }
-    }
-    return raised;
-}
-
 // ṽ += (x − (x̃ + Δt ṽ)) / Δt, or what a walk's corrections add up to.
 APSL_INLINE void correct_velocities(apsl_cloth cloth, bool active, float time_step, bool walking,
                                     __global const uint* vertex_order, __global const float4* predicted,
