@@ -10,6 +10,7 @@ typedef struct {
     float max;
     float rms;         // weighted with A⁰
     float capped_rms;  // the same with each triangle's counted as at most 1
+    float measured;    // Σ A⁰, m²
 } apsl_area_change;
 
 typedef struct {
@@ -19,16 +20,17 @@ typedef struct {
 } apsl_verdict;
 
 // A greatest area change that rounding makes in a cloth at rest: positions up to `extent` from the origin are off by
-// their resolution, in triangles that have `rest_area` on average.
-APSL_INLINE float at_rest_up_to(float extent, float rest_area) {
-    const float rounding = rest_area > 0.0f ? APSL_POSITION_RESOLUTION * extent / sqrt(rest_area) : 0.0f;
+// their resolution, and `triangle_count` triangles share a rest area of `measured`.
+APSL_INLINE float greatest_change_at_rest(float extent, float measured, uint triangle_count) {
+    const float rounding =
+        measured > 0.0f ? APSL_POSITION_RESOLUTION * extent * sqrt((float)triangle_count / measured) : 0.0f;
     return isfinite(rounding) ? fmax(rounding, APSL_AT_REST) : APSL_AT_REST;
 }
 
 // The capped RMS decides, so that a single triangle does not cost the others their correction.
-APSL_INLINE apsl_verdict judge(apsl_area_change initial, apsl_area_change change, float at_rest_up_to) {
+APSL_INLINE apsl_verdict judge(apsl_area_change initial, apsl_area_change change, float change_at_rest) {
     const bool rose = change.max > initial.max || change.rms > initial.rms || change.capped_rms > initial.capped_rms;
-    const bool at_rest = initial.max <= at_rest_up_to;
+    const bool at_rest = initial.max <= change_at_rest;
     apsl_verdict verdict;
     verdict.worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
     verdict.rose = rose && !at_rest;

@@ -56,6 +56,7 @@ APSL_INLINE void add_areas(apsl_area_sums* sums, apsl_triangle_geometry triangle
 APSL_INLINE apsl_area_change area_change_of(float max, float squared, float capped, float measured) {
     apsl_area_change change;
     change.max = max;
+    change.measured = measured;
     change.rms = measured > 0.0f ? sqrt(squared / measured) : 0.0f;
     change.capped_rms = measured > 0.0f ? sqrt(capped / measured) : 0.0f;
     return change;

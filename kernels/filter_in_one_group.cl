@@ -78,7 +78,7 @@ APSL_KERNEL void filter_in_one_group(
         group_memory_barrier();
         if (get_local_id(0) == 0) {
             if (!started) store_initial(states + c, stats, change, !broken);
-            states[c].mean_rest_area = measured / (float)cloths[c].triangle_count;
+            states[c].measured = change.measured;
             store_area_change(stats, change);
             if (broken) stats->status = APSL_STATUS_DIVERGED;
         }
@@ -136,8 +136,9 @@ APSL_KERNEL void filter_in_one_group(
     const float raised_vertices = group_sum(raised.count, scratch);
     const float mass_ratio = group_max(raised.greatest_ratio, scratch);
     const apsl_area_change initial = stored_initial(states + c, stats);
-    const apsl_area_change change = {stats->max_area_change, stats->rms_area_change, capped_rms};
-    const apsl_verdict verdict = judge(initial, change, at_rest_up_to(states[c].extent, states[c].mean_rest_area));
+    const apsl_area_change change = {stats->max_area_change, stats->rms_area_change, capped_rms, states[c].measured};
+    const apsl_verdict verdict =
+        judge(initial, change, greatest_change_at_rest(states[c].extent, states[c].measured, cloths[c].triangle_count));
     group_memory_barrier();  // all have read the statistics
     if (get_local_id(0) == 0) {
         const bool off = !parameters[c].enabled;

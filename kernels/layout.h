@@ -95,7 +95,7 @@ typedef struct {
     float initial_capped_rms;   // RMS area change at x̃ + Δt ṽ, each triangle's counted as at most 1
     float greatest_mass;        // of what a vertex may effectively weigh, kg
     float extent;               // greatest |coordinate|, m; kept by filter_in_one_group alone
-    float mean_rest_area;       // m²; likewise
+    float measured;             // Σ A⁰, m²; likewise
 } apsl_solve_state;
 
 // Partial results of the work-groups of a launch, one float a group for each of these.

@@ -67,7 +67,6 @@ APSL_KERNEL void end_call(__global const apsl_cloth* cloths, __global apsl_solve
     const apsl_area_change change = area_change(partials, groups, scratch);
     const bool bad_vertices = sum_partials(partials, APSL_PARTIAL_BAD_VERTICES, groups, scratch) > 0.0f;
     const float not_finite = sum_partials(partials, APSL_PARTIAL_NOT_FINITE, groups, scratch);
-    const float measured = sum_partials(partials, APSL_PARTIAL_MEASURED, groups, scratch);
     const float extent = max_partials(partials, APSL_PARTIAL_EXTENT, groups, scratch);
     const float raised = sum_partials(partials, APSL_PARTIAL_RAISED, groups, scratch);
     const float mass_ratio = max_partials(partials, APSL_PARTIAL_MASS_RATIO, groups, scratch);
@@ -77,7 +76,7 @@ APSL_KERNEL void end_call(__global const apsl_cloth* cloths, __global apsl_solve
     group_memory_barrier();
     const apsl_area_change initial = stored_initial(states + c, stats + c);
     const apsl_verdict verdict =
-        judge(initial, change, at_rest_up_to(extent, measured / (float)cloths[c].triangle_count));
+        judge(initial, change, greatest_change_at_rest(extent, change.measured, cloths[c].triangle_count));
     name_offender(stats + c, search_for(diverged, bad_vertices, verdict, change.max), cloths[c], vertex_order,
                   triangle_order, triangles, predicted, rest_areas, scratch);
     group_memory_barrier();  // all have read the status
