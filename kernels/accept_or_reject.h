@@ -51,6 +51,7 @@ APSL_INLINE apsl_area_change stored_initial(__global const apsl_solve_state* sta
     initial.max = stats->initial_max_area_change;
     initial.rms = stats->initial_rms_area_change;
     initial.capped_rms = state->initial_capped_rms;
+    initial.measured = 0.0f;  // not kept
     return initial;
 }
 
