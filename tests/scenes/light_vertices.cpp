@@ -85,7 +85,7 @@ TEST_CASE("light vertices go with edges below a length that is told") {
 
 TEST_CASE("a run tells which masses the filter raised, and what to do") {
     const Scene scene = grid_with(
-        R"(, "pins": [{"corners": ["-x-z", "+x-z"]}], "masses": [{"vertices": [12], "factor": 0.002}],
+        R"(, "pins": [{"corners": ["min_x_min_z", "max_x_min_z"]}], "masses": [{"vertices": [12], "factor": 0.002}],
            "strain_limiting": {}, "frames": 20)");
     SceneCloth cloth = make_scene_cloth(scene);
     const LightVertices light = cloth.light;
