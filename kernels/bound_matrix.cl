@@ -42,7 +42,7 @@ APSL_INLINE lanes greatest_eigenvalue(apsl_symmetric m) {
 #define APSL_RAISED_MARGIN 1.2f
 
 // s_i, from the gradients of the last sub-step; a gradient of zero may get any direction. Moves 12 B corners, 2 B
-// offsets, 24 B gradients, 16 B masses read, 2 B written, a triangle.
+// offsets, 24 B gradients read, 2 B written, a triangle; with raised masses 16 B more read.
 APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
                                 __global const apsl_solve_state* states, __global const uint* corner_offsets,
                                 __global const uint* corners, __global const apsl_gradients* gradients,

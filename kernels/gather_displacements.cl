@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Eq. (6) with λ = p Δt²: x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, on to the next of small steps, and how the solve ended.
 // Reference: apsl::reference, displacements, effective_masses and strain_limiter. Moves 12 B corners, 2 B offsets, 24 B
-// gradients, 4 B pressure, 16 B position read and written, a triangle; in a walk 32 B more, and 4 B a corner for the
-// stiffness of its tension.
+// gradients, 4 B pressure, 16 B position read and written, a triangle; in a walk 32 B and the 4 B of `stiffening`
+// more.
 #include "first_guess.h"
 #include "layout.h"
 #include "regularization.h"

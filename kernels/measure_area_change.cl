@@ -6,7 +6,7 @@
 #include "work_group.h"
 
 // What a call leaves behind, and the vertices that weighed more than given.
-// Moves 12 B indices, about 8 B positions, 4 B rest area read a triangle; after a walk 32 B a vertex.
+// Moves 12 B indices, about 8 B positions, 4 B rest area read a triangle; with raised masses 32 B a vertex.
 APSL_KERNEL void measure_area_change(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
                                      __global float* partials, __global const uint* triangles,
                                      __global const float4* predicted, __global const float4* motion,

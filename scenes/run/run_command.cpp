@@ -101,6 +101,7 @@ int run_command(const RunOptions& options) {
     SceneCloth cloth = make_scene_cloth(scene);
     std::vector<std::string> warnings = cloth.warnings;
     const Pieces pieces = cloth.pieces;
+    const LightVertices light = cloth.light;
     std::optional<OpenClDevice> device;
     if (scene.strain_limiting && options.backend == Backend::opencl) device = choose_opencl_device(options.device);
     if (options.out) make_writable_folder(*options.out);
@@ -116,6 +117,7 @@ int run_command(const RunOptions& options) {
     if (options.out) output.emplace(*options.out, simulation.cloth(), scene.time_step * scene.steps_per_frame);
     RunReport report = describe(options, simulation);
     report.pieces = pieces;
+    report.light = light;
     const bool complete = simulate(simulation, scene.frames, output, report);
     if (!complete && !report.breakdown) {
         std::fprintf(stderr, "interrupted after %zu of %d frames; no report is written\n", report.frames.size(),

@@ -105,6 +105,8 @@ SceneCloth make_scene_cloth(const Scene& scene) {
             if (const auto warning = coincidence_warning(cloth.state, cloth.pieces))
                 cloth.warnings.push_back(name + ": " + *warning);
         }
+        cloth.light = light_vertices(cloth.state);
+        if (const auto warning = light_vertices_warning(cloth.light)) cloth.warnings.push_back(name + ": " + *warning);
         note_start_inside(scene, cloth.state, cloth.warnings);
     } catch (const Error& error) {
         throw InputError(name + ": " + error.what());

@@ -3,6 +3,7 @@
 
 #include "pipeline/cloth_state.hpp"
 #include "pipeline/pins.hpp"
+#include "run/light_vertices.hpp"
 #include "run/pieces.hpp"
 #include "run/scene.hpp"
 
@@ -16,6 +17,7 @@ struct SceneCloth {
     ClothState state;
     std::vector<PinGroup> pins;
     Pieces pieces;
+    LightVertices light;
     std::vector<std::string> warnings;  ///< one line each, with what to do
 };
 

@@ -34,6 +34,18 @@ std::string first_offender(const Stats& stats) {
     return ", first at " + (what + std::to_string(stats.offender_index));
 }
 
+// Of one call of the filter.
+void note_stats(const Stats& stats, int frame, int step, FrameReport& report) {
+    report.sub_steps += stats.sub_steps;
+    report.cg_iterations += stats.cg_iterations;
+    report.status = std::max(report.status, stats.status);
+    report.raised_vertices = std::max(report.raised_vertices, stats.raised_vertices);
+    report.greatest_mass_ratio = std::max(report.greatest_mass_ratio, static_cast<double>(stats.greatest_mass_ratio));
+    if (stats.status != Status::worsened || stats.offender != Offender::triangle) return;
+    if (report.worsened && report.worsened->area_change >= stats.max_area_change) return;
+    report.worsened = {frame, step, stats.offender_index, stats.max_area_change, stats.initial_max_area_change};
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, SceneCloth cloth, FilterStage filter, bool keep_area_changes)
@@ -127,9 +139,7 @@ void Simulation::run_step(int step, FrameReport& report) {
         const double seconds = filtering.seconds();
         report.filter_seconds += seconds;
         report.step_seconds += seconds;
-        report.sub_steps += stats->sub_steps;
-        report.cg_iterations += stats->cg_iterations;
-        report.status = std::max(report.status, stats->status);
+        note_stats(*stats, frame_, step, report);
     }
     measure_areas(report, std::holds_alternative<CustomFilter>(filter_) ? std::nullopt : stats);
     if (stats && stats->status == Status::diverged) {
