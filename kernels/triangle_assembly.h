@@ -90,6 +90,12 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         const uint a = cloth.triangle_begin + block * APSL_LANES;
         const apsl_triangle_geometry triangle = load_triangles(triangles, predicted, a);
         const lanes rest_area = load_lanes(rest_areas, a);
+        lanes excess = triangle.area - rest_area;
+        if (walking) {  // uniform
+            if (error_left > 0.0f) excess -= error_left * load_lanes(start_errors, a);
+            const lanes least = (1.0f - APSL_GREATEST_GROWTH) * triangle.area;
+            excess = select(excess, least, excess < least);  // a NaN stays
+        }
 #if APSL_CHEBYSHEV
         (void)alpha;
         (void)damping;
@@ -107,14 +113,8 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         const lanes shift = (effective - 1.0f) / effective, damped = effective * triangle.diagonal;
 #endif
         const lanes scale = jacobi_scale(damped, rest_area);
-        lanes excess = triangle.area - rest_area;
-        if (error_left > 0.0f) excess -= error_left * load_lanes(start_errors, a);  // uniform
-        const lanes least = (walking ? 1.0f - APSL_GREATEST_GROWTH : -INFINITY) * triangle.area;
-        excess = select(excess, least, excess < least);  // a NaN stays
         const lanes stretch = select((lanes)(0.0f), excess, scale > 0.0f);
         const lanes r = scale * stretch;
-        sums.squares += stretch * stretch;
-        sums.scaled_squares += r * r;
 
         lanes_int words[8];
         pack_gradient(triangle, 0, scale, words);
@@ -125,6 +125,8 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         store_records(words, (__global int4*)gradients, a);
         store_lanes(r, residual, a);
         store_lanes(damped, damped_diagonal, a);
+        sums.squares += stretch * stretch;
+        sums.scaled_squares += r * r;
         add_areas(&sums.areas, triangle, rest_area);
     }
     return sums;
