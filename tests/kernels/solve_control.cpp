@@ -146,8 +146,8 @@ TEST_CASE("end_call: never worse than at the start", "[end_call]") {
     // What the groups report is 0.3 and 0.1.
     const std::vector<Outcome> outcomes{
         {0.4f, 0.2f, APSL_STATUS_OK, 0, 0.3f, 0.1f},          // both fell
-        {0.2f, 0.2f, APSL_STATUS_WORSENED, 0, 0.3f, 0.1f},    // the greatest rose, the RMS fell
-        {0.4f, 0.05f, APSL_STATUS_WORSENED, 1, 0.4f, 0.05f},  // the RMS rose
+        {0.2f, 0.2f, APSL_STATUS_WORSENED, 0, 0.3f, 0.1f},    // the greatest rose, the capped RMS fell
+        {0.4f, 0.05f, APSL_STATUS_WORSENED, 1, 0.4f, 0.05f},  // the capped RMS rose
         {0.2f, 0.05f, APSL_STATUS_WORSENED, 1, 0.2f, 0.05f},  // both rose
         {9e-6f, 3e-6f, APSL_STATUS_OK, 1, 9e-6f, 3e-6f},      // was at rest
     };
@@ -159,6 +159,12 @@ TEST_CASE("end_call: never worse than at the start", "[end_call]") {
         stats.initial_max_area_change = expected.initial_max;
         stats.initial_rms_area_change = expected.initial_rms;
         reported.arrays.stats.write({stats});
+        // The RMS has no say but in the status; the capped one is as great here.
+        reported.arrays.write_partial_sum(0, APSL_PARTIAL_CAPPED_CHANGE, 0.01);
+        reported.arrays.write_partial_sum(0, APSL_PARTIAL_MEASURED, 1.0);
+        reported.arrays.write_partial_sum(0, APSL_PARTIAL_SQUARED_CHANGE, 0.01);
+        reported.arrays.write_partial_sum(0, APSL_PARTIAL_EXTENT, 0.0);
+        reported.arrays.edit_states([&](apsl_solve_state& state) { state.initial_capped_rms = expected.initial_rms; });
         launch::end_call(reported.arrays, {});
         const apsl_stats got = reported.stats();
         CHECK(got.status == expected.status);

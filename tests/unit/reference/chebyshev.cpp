@@ -32,7 +32,9 @@ struct Bounded {
 Bounded bounded(const test::SampleCloth& cloth) {
     const auto geometry = cloth.geometry();
     Bounded result{pressure_matrix<double>(Matrix::consistent, *cloth.topology, geometry, cloth.inverse_masses), {}};
-    diagonal_bound<double>(*cloth.topology, geometry, cloth.inverse_masses, result.bound);
+    std::vector<double> bounds;
+    vertex_bounds<double>(*cloth.topology, geometry, bounds);
+    diagonal_bound<double>(*cloth.topology, geometry, cloth.inverse_masses, bounds, result.bound);
     return result;
 }
 
