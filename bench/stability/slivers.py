@@ -4,7 +4,7 @@
 import meshes
 from scene_map import BASE, SIDE, SOFT_TO_STIFF, WITHOUT_PRINTED, Axis, Map
 
-HEIGHTS = [1 / 10, 1 / 30, 1 / 100, 1 / 300, 1 / 1000]  # of a sliver, of its edge
+HEIGHTS = [1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100, 1 / 200, 1 / 500, 1 / 1000]  # of a sliver, of its edge
 LABEL = "height of a sliver, of its edge"
 # Rows of cells of the 16 that a belt lies in front of.
 PLACES = {"at the pins": [0], "in the middle": [8], "at the hem": [16], "four belts": [0, 4, 8, 12]}
