@@ -1,14 +1,15 @@
 # Run as a script at build time: writes OUTPUT, a C++ source that holds FILES (names below DIRECTORY, separated by |) as
-# bytes. Hex rather than string literals: nothing to escape, no limit on length.
+# bytes. Hex rather than string literals: nothing to escape, no limit on length. Constant expressions: a limiter in a global
+# object may need them before this file's dynamic initialisation.
 string(REPLACE "|" ";" files "${FILES}")
 set(arrays "")
 set(table "")
 foreach(file IN LISTS files)
   file(READ "${DIRECTORY}/${file}" bytes HEX)
-  string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+  string(REGEX REPLACE "(..)" "'\\\\x\\1'," bytes "${bytes}")
   string(MAKE_C_IDENTIFIER "${file}" name)
-  string(APPEND arrays "const unsigned char ${name}[] = {${bytes}};\n")
-  string(APPEND table "    {\"${file}\", {reinterpret_cast<const char*>(${name}), sizeof ${name}}},\n")
+  string(APPEND arrays "constexpr char ${name}[] = {${bytes}};\n")
+  string(APPEND table "    {\"${file}\", {${name}, sizeof ${name}}},\n")
 endforeach()
 file(WRITE "${OUTPUT}.new" "// Made by cmake/EmbedKernels.cmake.
 #include \"kernel_sources.hpp\"
@@ -17,7 +18,7 @@ namespace apsl::host {
 namespace {
 
 ${arrays}
-const KernelSource sources[] = {
+constexpr KernelSource sources[] = {
 ${table}};
 
 }  // namespace

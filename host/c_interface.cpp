@@ -2,9 +2,12 @@
 #include <apsl/apsl.h>
 #include <apsl/strain_limiter.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 struct apsl_topology {
@@ -32,17 +35,15 @@ static_assert(static_cast<int>(apsl::Execution::one_group) == APSL_EXECUTION_ONE
 
 static_assert(static_cast<int>(apsl::ProgramBinaryUse::refused_by_driver) == APSL_PROGRAM_BINARY_REFUSED_BY_DRIVER);
 
-std::string& last_error() {
-    thread_local std::string message;
-    return message;
-}
+// Plain bytes: no memory to run out of, and nothing destroyed ahead of a global object whose destructor calls here.
+thread_local std::array<char, 4096> last_error{};
 
 apsl_result fail(apsl_result result, const char* message) noexcept {
-    try {
-        last_error() = message;
-    } catch (...) {
-        last_error().clear();  // no memory for the message; the result stands
-    }
+    std::size_t size = std::min(std::strlen(message), last_error.size() - 1);
+    // Where it is cut short, not within a character of UTF-8.
+    while (message[size] != '\0' && size > 0 && (message[size] & 0xC0) == 0x80) --size;
+    std::memcpy(last_error.data(), message, size);
+    last_error[size] = '\0';
     return result;
 }
 
@@ -55,6 +56,8 @@ apsl_result guarded(const Action& action) noexcept {
     } catch (const apsl::Error& error) {
         return fail(static_cast<apsl_result>(error.code()), error.what());
     } catch (const std::bad_alloc&) {
+        return fail(APSL_ERROR_OUT_OF_MEMORY, "out of host memory");
+    } catch (const std::length_error&) {  // a vector's, of more elements than there are addresses
         return fail(APSL_ERROR_OUT_OF_MEMORY, "out of host memory");
     } catch (const std::exception& error) {
         return fail(APSL_ERROR_INTERNAL, error.what());
@@ -152,7 +155,7 @@ void hand_over(cl_event end, cl_event* event) {
 }  // namespace
 
 const char* apsl_last_error(void) {
-    return last_error().c_str();
+    return last_error.data();
 }
 
 apsl_limiter_options apsl_limiter_default_options(void) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "device_parameters.hpp"
 
+#include "raised_masses.hpp"
 #include "stepping.hpp"
 
 #include <algorithm>
@@ -26,6 +27,7 @@ apsl_parameters device_parameters(const Parameters& p) {
             .adaptive_iterations = p.adaptive_iterations,
             .walked = on ? walked_sub_steps(p) : 0,
             .enabled = on,
+            .raises_masses = on && raises_masses(p),
             .padding = {}};
 }
 

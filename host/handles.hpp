@@ -30,6 +30,7 @@ private:
 };
 
 using ContextHandle = Handle<cl_context, clReleaseContext>;
+using QueueHandle = Handle<cl_command_queue, clReleaseCommandQueue>;
 using ProgramHandle = Handle<cl_program, clReleaseProgram>;
 using KernelHandle = Handle<cl_kernel, clReleaseKernel>;
 using BufferHandle = Handle<cl_mem, clReleaseMemObject>;

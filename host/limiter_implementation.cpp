@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "limiter_implementation.hpp"
 
+#include "caller_objects.hpp"
 #include "device_parameters.hpp"
 #include "limiter_options.hpp"
 #include "opencl_error.hpp"
@@ -19,6 +20,7 @@ static_assert(sizeof(Stats) == sizeof(apsl_stats));
 static_assert(offsetof(Stats, residual) == offsetof(apsl_stats, residual));
 static_assert(offsetof(Stats, status) == offsetof(apsl_stats, status));
 static_assert(offsetof(Stats, offender_index) == offsetof(apsl_stats, offender_index));
+static_assert(offsetof(Stats, greatest_mass_ratio) == offsetof(apsl_stats, greatest_mass_ratio));
 static_assert(std::has_single_bit(sizeof(apsl_parameters)), "clEnqueueFillBuffer takes powers of two");
 static_assert(static_cast<int>(Status::not_converged) == APSL_STATUS_NOT_CONVERGED);
 static_assert(static_cast<int>(Status::worsened) == APSL_STATUS_WORSENED);
@@ -31,19 +33,6 @@ constexpr std::size_t gradient_bytes = 32;
 
 [[noreturn]] void invalid(const std::string& what) {
     throw Error(ErrorCode::invalid_argument, what);
-}
-
-void check_view(const BufferView& view, std::size_t floats, const char* name) {
-    if (!view.buffer) invalid(std::string(name) + " is null");
-    if (view.offset % sizeof(float) != 0)
-        invalid(std::string(name) + " has offset " + std::to_string(view.offset) + ", expected a multiple of 4 bytes");
-    std::size_t size = 0;
-    check(clGetMemObjectInfo(view.buffer, CL_MEM_SIZE, sizeof size, &size, nullptr), "asking a buffer for its size");
-    const std::size_t needed = floats * sizeof(float);
-    // Subtracted rather than added: an offset near the end of the range must not wrap round.
-    if (view.offset > size || size - view.offset < needed)
-        invalid(std::string(name) + " holds " + std::to_string(size) + " bytes, expected at least " +
-                std::to_string(needed) + " from offset " + std::to_string(view.offset) + " on");
 }
 
 /// Floats from the first number of the first vertex to the last of the last.
@@ -78,12 +67,14 @@ StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_
                                               const Options& requested, std::span<const std::byte> program_binary,
                                               const BufferView& scratch, const Implementation* built)
     : Implementation(the_context, the_device, built ? built->facts : device_facts(the_device), scratch) {
+    if (built) memory.keep_clear_of(built->memory);
     const Adjacency adjacency = plan(topologies, requested);
     if (built && adjacency.max_patch_vertices <= built->patch_vertex_room)
         share_program(*built);
     else
         create_program(adjacency.max_patch_vertices, program_binary);
     create_buffers(adjacency);
+    memory.finish_uploads();
     create_kernels();
 }
 
@@ -158,13 +149,13 @@ void StrainLimiter::Implementation::create_buffers(const Adjacency& adjacency) {
     if (assembled()) values = buffer(adjacency.columns.size() * sizeof(float));
 
     ordered_rest_areas = zeroed_buffer(triangle_count);
-    const bool regularized = options.regularization_per_triangle || by_chebyshev();
-    ordered_regularization = upload(std::vector<float>(regularized ? triangle_count : 1, 1.0f));
-    if (by_chebyshev()) vertex_bound = buffer(vertex_count * sizeof(float));
+    ordered_regularization = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
+    if (by_chebyshev()) vertex_bounds = buffer(vertex_count * sizeof(float));
     predicted = buffer(std::size_t{vertex_count} * sizeof(cl_float4));
     const std::size_t walking_vertices = options.positions_only ? 1 : vertex_count;
     motion = buffer(walking_vertices * sizeof(cl_float4));
     correction = buffer(walking_vertices * sizeof(cl_float4));
+    start_errors = zeroed_buffer(options.positions_only ? 1 : triangle_count);
     gradients = buffer(triangle_count * gradient_bytes);
     residual = zeroed_buffer(triangle_count);
     damped_diagonal = zeroed_buffer(triangle_count);
@@ -192,12 +183,12 @@ void StrainLimiter::Implementation::create_kernels() {
         set_arguments(filter_in_one_group, 0, cloths, parameters, states, stats, vertex_order, triangle_order,
                       triangles, patches, patch_vertices, local_triangles, corner_offsets, corners, predicted, motion,
                       correction, gradients, residual, damped_diagonal, product, direction, direction_product,
-                      pressures[0], ordered_rest_areas, ordered_regularization);
-        set_argument(filter_in_one_group, 34, cl_uint{triangle_count});
+                      pressures[0], ordered_rest_areas, ordered_regularization, start_errors);
+        set_argument(filter_in_one_group, 35, cl_uint{triangle_count});
         return;
     }
     predict_positions = kernel("predict_positions");
-    set_arguments(predict_positions, 0, cloths, parameters, states, stats, partials, vertex_order, predicted);
+    set_arguments(predict_positions, 0, cloths, parameters, states, stats, partials, vertex_order, predicted, motion);
     begin_call = kernel("begin_call");
     set_arguments(begin_call, 0, parameters, states, stats, partials, groups);
     if (!options.positions_only) {
@@ -209,9 +200,14 @@ void StrainLimiter::Implementation::create_kernels() {
                   ordered_regularization);
     assemble_gradients = kernel("assemble_gradients");
     set_arguments(assemble_gradients, 0, cloths, parameters, states, partials, triangles, predicted, gradients,
-                  residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
+                  residual, damped_diagonal, ordered_rest_areas,
+                  by_chebyshev() ? vertex_bounds : ordered_regularization, start_errors);
+    measure_step = kernel("measure_step");
+    set_arguments(measure_step, 0, cloths, parameters, partials, triangles, predicted, motion, ordered_rest_areas,
+                  start_errors);
     measure_area_change = kernel("measure_area_change");
-    set_arguments(measure_area_change, 0, cloths, parameters, partials, triangles, predicted, ordered_rest_areas);
+    set_arguments(measure_area_change, 0, cloths, parameters, partials, triangles, predicted, motion,
+                  ordered_rest_areas);
     begin_solve = kernel("begin_solve");
     set_arguments(begin_solve, 0, parameters, states, stats, partials, groups);
     end_call = kernel("end_call");
@@ -232,9 +228,8 @@ void StrainLimiter::Implementation::create_kernels() {
 void StrainLimiter::Implementation::create_chebyshev() {
     const auto kernel = [&](const char* name) { return create_kernel(program.get(), name); };
     bound_vertices = kernel("bound_vertices");
-    set_arguments(bound_vertices, 0, cloths, states, corner_offsets, corners, gradients, damped_diagonal, vertex_bound);
-    bound_triangles = kernel("bound_triangles");
-    set_arguments(bound_triangles, 0, cloths, states, triangles, damped_diagonal, vertex_bound, ordered_regularization);
+    set_arguments(bound_vertices, 0, cloths, parameters, states, corner_offsets, corners, gradients, predicted, motion,
+                  vertex_bounds);
     chebyshev_step = kernel("chebyshev_step");
     set_arguments(chebyshev_step, 0, cloths, parameters, states, patches, patch_vertices, local_triangles,
                   corner_offsets, corners, gradients, residual);
@@ -284,18 +279,22 @@ std::size_t StrainLimiter::Implementation::position_floats() const {
 }
 
 void StrainLimiter::Implementation::check_buffers(const Buffers& buffers) const {
-    check_view(buffers.positions, position_floats(), "buffers.positions");
+    const auto check = [&](const BufferView& view, std::size_t floats, Access access, const char* name) {
+        check_view(view, floats, access, context, name);
+    };
+    check(buffers.positions, position_floats(), options.positions_only ? Access::read_and_write : Access::read,
+          "buffers.positions");
     if (!options.positions_only)
-        check_view(buffers.velocities,
-                   vector_extent(vertex_count, options.velocity_stride, options.velocity_component_stride),
-                   "buffers.velocities");
+        check(buffers.velocities,
+              vector_extent(vertex_count, options.velocity_stride, options.velocity_component_stride),
+              Access::read_and_write, "buffers.velocities");
     else if (buffers.velocities.buffer)
         invalid("buffers.velocities is given, but Options::positions_only is on");
-    check_view(buffers.inverse_masses, std::size_t{vertex_count - 1} * options.inverse_mass_stride + 1,
-               "buffers.inverse_masses");
-    check_view(buffers.rest_areas, rest_area_count, "buffers.rest_areas");
+    check(buffers.inverse_masses, std::size_t{vertex_count - 1} * options.inverse_mass_stride + 1, Access::read,
+          "buffers.inverse_masses");
+    check(buffers.rest_areas, rest_area_count, Access::read, "buffers.rest_areas");
     if (options.regularization_per_triangle)
-        check_view(buffers.regularization, rest_area_count, "buffers.regularization");
+        check(buffers.regularization, rest_area_count, Access::read, "buffers.regularization");
     else if (buffers.regularization.buffer)
         invalid("buffers.regularization is given, but Options::regularization_per_triangle is off");
 }
@@ -308,20 +307,17 @@ void StrainLimiter::Implementation::bind(const Buffers& buffers) const {
     const BufferView& regularization = buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
     const BufferView& corrected = options.positions_only ? buffers.positions : buffers.velocities;
     if (one_group()) {
-        set(filter_in_one_group, 24, buffers.positions);
-        set(filter_in_one_group, 26, corrected);
-        set(filter_in_one_group, 28, buffers.inverse_masses);
-        set(filter_in_one_group, 30, buffers.rest_areas);
-        set(filter_in_one_group, 32, regularization);
+        set(filter_in_one_group, 25, buffers.positions);
+        set(filter_in_one_group, 27, corrected);
+        set(filter_in_one_group, 29, buffers.inverse_masses);
+        set(filter_in_one_group, 31, buffers.rest_areas);
+        set(filter_in_one_group, 33, regularization);
         return;
     }
-    set(predict_positions, 7, buffers.positions);
-    set(predict_positions, 9, corrected);
-    set(predict_positions, 11, buffers.inverse_masses);
-    if (start_walk.handle) {
-        set(start_walk, 7, buffers.positions);
-        set(start_walk, 9, buffers.velocities);
-    }
+    set(predict_positions, 8, buffers.positions);
+    set(predict_positions, 10, corrected);
+    set(predict_positions, 12, buffers.inverse_masses);
+    if (start_walk.handle) set(start_walk, 7, buffers.velocities);
     set(order_triangle_values, 5, buffers.rest_areas);
     set(order_triangle_values, 7, regularization);
     set(update_velocities, 6, buffers.positions);
@@ -371,7 +367,7 @@ void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, const
 }
 
 void StrainLimiter::Implementation::queue_assembly(CommandSequence& commands, int sub_step) const {
-    set_argument(assemble_gradients, 11, cl_int{sub_step});
+    set_argument(assemble_gradients, 12, cl_int{sub_step});
     launch(commands, assemble_gradients);
     set_argument(begin_solve, 5, cl_int{sub_step});
     launch_one_group(commands, begin_solve);
@@ -407,14 +403,13 @@ void StrainLimiter::Implementation::queue_conjugate_gradient(CommandSequence& co
 
 void StrainLimiter::Implementation::queue_bound(CommandSequence& commands, int sub_step) const {
     if (sub_step == 0) {
-        // Gradients scaled by the diagonal alone.
+        // Directions are all that bound_vertices reads of the gradients: any scale will do.
         const cl_float one = 1.0f;
-        commands.fill(ordered_regularization, &one, sizeof one, 0, triangle_count * sizeof one);
-        set_argument(assemble_gradients, 11, cl_int{0});
+        commands.fill(vertex_bounds, &one, sizeof one, 0, vertex_count * sizeof one);
+        set_argument(assemble_gradients, 12, cl_int{0});
         launch(commands, assemble_gradients);
     }
     launch(commands, bound_vertices);
-    launch(commands, bound_triangles);
 }
 
 void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, const CallBudget& budget,
@@ -437,7 +432,7 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
     launch(commands, predict_positions);
     launch(commands, order_triangle_values);
     if (budget.walks) {
-        launch(commands, measure_area_change);
+        launch(commands, measure_step);
         launch_one_group(commands, begin_call);
         launch(commands, start_walk);
     }
@@ -469,6 +464,7 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
                     ", expected 0: Options::solver is chebyshev, which has no iterations to go by");
         budget.add(as_run(p));
     }
+    check_queue(queue, wait_list, context, device);
     check_buffers(buffers);
     bind(buffers);
 
@@ -484,8 +480,9 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
 cl_event StrainLimiter::Implementation::enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions,
                                                            const BufferView& areas,
                                                            std::span<const cl_event> wait_list) {
-    check_view(rest_positions, position_floats(), "rest_positions");
-    check_view(areas, rest_area_count, "rest_areas");
+    check_queue(queue, wait_list, context, device);
+    check_view(rest_positions, position_floats(), Access::read, context, "rest_positions");
+    check_view(areas, rest_area_count, Access::write, context, "rest_areas");
     set_arguments(rest_areas, 4, rest_positions.buffer, cl_ulong{rest_positions.offset / sizeof(float)}, areas.buffer,
                   cl_ulong{areas.offset / sizeof(float)});
     CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);

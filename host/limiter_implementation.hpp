@@ -50,19 +50,19 @@ struct StrainLimiter::Implementation {
     host::BufferHandle vertex_order, triangle_order, ordered_rest_areas, ordered_regularization, triangles,
         corner_offsets, corners;
     host::BufferHandle patches, patch_vertices, local_triangles, row_offsets, columns, shared, values;
-    host::BufferHandle predicted, motion, correction, gradients, residual, damped_diagonal, product, direction,
-        direction_product, vertex_bound;
+    host::BufferHandle predicted, motion, correction, start_errors, gradients, residual, damped_diagonal, product,
+        direction, direction_product, vertex_bounds;
     /// One for each sub-step whose pressures are kept, one alone where none are; in one_group all in a single buffer.
     std::vector<host::BufferHandle> pressures;
 
     host::ProgramHandle program;
     host::Fingerprint program_fingerprint{};
     ProgramBinaryUse binary_use = ProgramBinaryUse::none_given;
-    host::Kernel set_parameters, rest_areas, predict_positions, order_triangle_values, assemble_gradients,
+    host::Kernel set_parameters, rest_areas, predict_positions, order_triangle_values, assemble_gradients, measure_step,
         measure_area_change, begin_call, start_walk, begin_solve, end_call;
     host::Kernel assemble_pressure_csr, apply_dot, cg_update, finish_solve, gather_displacements, update_velocities;
     host::Kernel measure_guess, start_from_guess;
-    host::Kernel bound_vertices, bound_triangles, chebyshev_step;
+    host::Kernel bound_vertices, chebyshev_step;
     host::Kernel filter_in_one_group;
 
 private:
@@ -103,8 +103,8 @@ private:
     void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;
     /// Assembles sub-step `sub_step` and decides whether it is done.
     void queue_assembly(host::CommandSequence& commands, int sub_step) const;
-    /// Leaves the bound of the matrix that sub-step `sub_step` scales by: of the one before, or of its own where it is
-    /// the first.
+    /// Leaves the bounds that sub-step `sub_step` scales the matrix by: of the geometry before, or of its own where it
+    /// is the first.
     void queue_bound(host::CommandSequence& commands, int sub_step) const;
     void queue_chebyshev(host::CommandSequence& commands, const host::CallBudget& budget, int sub_step) const;
     void queue_conjugate_gradient(host::CommandSequence& commands, const host::CallBudget& budget, int sub_step) const;

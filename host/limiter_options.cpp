@@ -99,6 +99,10 @@ Options resolve(Options options, const DeviceFacts& facts, std::span<const std::
     if (options.inverse_mass_stride == 0) invalid("inverse_mass_stride is 0, expected at least 1");
     if (options.matrix != Matrix::consistent && options.matrix != Matrix::printed) invalid("unknown matrix");
     if (options.apply != Apply::assembled_csr && options.apply != Apply::matrix_free) invalid("unknown apply");
+    constexpr std::uint32_t most_kept = 65536;
+    if (options.kept_pressures > most_kept)
+        invalid("kept_pressures is " + std::to_string(options.kept_pressures) + ", expected at most " +
+                std::to_string(most_kept));
     check_solver(options);
     options.execution = resolve_execution(options, facts, largest_triangle_count(cloths));
     if (options.work_group_size == 0)

@@ -44,6 +44,7 @@ void append(std::string& out, std::string_view name, std::set<std::string_view>&
 }
 
 std::string first_error(const std::string& log) {
+    if (log.find_first_not_of(std::string_view(" \n\r\t\0", 5)) == std::string::npos) return "there is no build log";
     const std::size_t at = log.find("error:");
     if (at == std::string::npos) return "see the build log";
     const std::size_t begin = log.rfind('\n', at) == std::string::npos ? 0 : log.rfind('\n', at) + 1;

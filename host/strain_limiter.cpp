@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <apsl/strain_limiter.hpp>
 
+#include "caller_objects.hpp"
 #include "limiter_implementation.hpp"
 #include "opencl_error.hpp"
 
@@ -8,8 +9,9 @@ namespace apsl {
 
 StrainLimiter::StrainLimiter(cl_context context, cl_device_id device,
                              std::span<const std::shared_ptr<const Topology>> cloths, const Options& options,
-                             std::span<const std::byte> program_binary, const BufferView& scratch)
-    : implementation_(std::make_unique<Implementation>(context, device, cloths, options, program_binary, scratch)) {
+                             std::span<const std::byte> program_binary, const BufferView& scratch) {
+    host::check_device(context, device);
+    implementation_ = std::make_unique<Implementation>(context, device, cloths, options, program_binary, scratch);
 }
 
 StrainLimiter::StrainLimiter(cl_context context, cl_device_id device, const std::shared_ptr<const Topology>& cloth,
@@ -82,6 +84,7 @@ cl_event StrainLimiter::read_stats(cl_command_queue queue, std::span<Stats> stat
         throw Error(ErrorCode::invalid_argument, std::to_string(stats.size()) +
                                                      " statistics asked for, expected one for each of " +
                                                      std::to_string(implementation_->cloth_count) + " cloths");
+    host::check_queue(queue, wait_list, implementation_->context, implementation_->device);
     cl_event event = nullptr;
     host::check(clEnqueueReadBuffer(queue, implementation_->stats.get(), CL_FALSE, 0, stats.size_bytes(), stats.data(),
                                     static_cast<cl_uint>(wait_list.size()),

@@ -3,18 +3,20 @@
 #ifndef APSL_AREA_SUMS_H
 #define APSL_AREA_SUMS_H
 
+#include "accept_or_reject.h"
 #include "layout.h"
 #include "triangle_geometry.h"
 #include "work_group.h"
 
 typedef struct {
-    lanes max_change, squared_change, measured, not_finite;
+    lanes max_change, squared_change, capped_change, measured, not_finite;
 } apsl_area_sums;
 
 APSL_INLINE apsl_area_sums no_areas(void) {
     apsl_area_sums sums;
     sums.max_change = 0.0f;
     sums.squared_change = 0.0f;
+    sums.capped_change = 0.0f;
     sums.measured = 0.0f;
     sums.not_finite = 0.0f;
     return sums;
@@ -44,13 +46,34 @@ APSL_INLINE void add_areas(apsl_area_sums* sums, apsl_triangle_geometry triangle
     sums->max_change = select(sums->max_change, change, change > sums->max_change);
     const lanes weight = select((lanes)(0.0f), rest_area, rest_area > 0.0f);
     sums->squared_change += weight * change * change;
+    const lanes capped = fmin(change, (lanes)(1.0f));
+    sums->capped_change += weight * capped * capped;
     sums->measured += weight;
     sums->not_finite += select((lanes)(1.0f), (lanes)(0.0f), fabs(area_witness(triangle, rest_area)) < INFINITY);
+}
+
+// From the sums over a cloth.
+APSL_INLINE apsl_area_change area_change_of(float max, float squared, float capped, float measured) {
+    apsl_area_change change;
+    change.max = max;
+    change.measured = measured;
+    change.rms = measured > 0.0f ? sqrt(squared / measured) : 0.0f;
+    change.capped_rms = measured > 0.0f ? sqrt(capped / measured) : 0.0f;
+    return change;
+}
+
+// By a work-group that has all triangles of a cloth; there are barriers inside.
+APSL_INLINE apsl_area_change area_change_in_group(apsl_area_sums sums, __local float* scratch) {
+    const float squared = group_sum(sum_of_lanes(sums.squared_change), scratch);
+    const float capped = group_sum(sum_of_lanes(sums.capped_change), scratch);
+    const float measured = group_sum(sum_of_lanes(sums.measured), scratch);
+    return area_change_of(group_max(max_of_lanes(sums.max_change), scratch), squared, capped, measured);
 }
 
 APSL_INLINE void store_area_partials(apsl_area_sums sums, __global float* partials, __local float* scratch) {
     store_partial(partials, APSL_PARTIAL_MAX_CHANGE, group_max(max_of_lanes(sums.max_change), scratch));
     store_partial(partials, APSL_PARTIAL_SQUARED_CHANGE, group_sum(sum_of_lanes(sums.squared_change), scratch));
+    store_partial(partials, APSL_PARTIAL_CAPPED_CHANGE, group_sum(sum_of_lanes(sums.capped_change), scratch));
     store_partial(partials, APSL_PARTIAL_MEASURED, group_sum(sum_of_lanes(sums.measured), scratch));
     store_partial(partials, APSL_PARTIAL_NOT_FINITE, group_sum(sum_of_lanes(sums.not_finite), scratch));
 }

@@ -2,7 +2,7 @@
 // Areas, right-hand side of Eq. (5) and scaled corner gradients: everything a solve needs of the geometry, and the sums
 // that decide whether there is a solve at all. Reference: apsl::reference, geometry, and the diagonal of Eq. (3).
 // Moves 12 B indices, about 8 B positions, 4 B rest area read; 32 B gradients, 4 B residual, 4 B α D
-// written, a triangle.
+// written, a triangle; in a walk 4 B start error read.
 #include "layout.h"
 #include "triangle_assembly.h"
 #include "work_group.h"
@@ -12,14 +12,16 @@ APSL_KERNEL void assemble_gradients(__global const apsl_cloth* cloths, __global 
                                     __global const uint* triangles, __global const float4* predicted,
                                     __global apsl_gradients* gradients, __global float* residual,
                                     __global float* damped_diagonal, __global const float* rest_areas,
-                                    __global const float* regularization, int sub_step) {
+                                    __global const float* regularization, __global const float* start_errors,
+                                    int sub_step) {
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const apsl_assembly_sums sums =
         assemble_triangles(cloths[c], !states[c].stopped, parameters[c].regularization,
                            scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_step),
                            states[c].adaptive_factor, triangles, predicted, gradients, residual, damped_diagonal,
-                           rest_areas, regularization);
+                           rest_areas, regularization, walked_sub_steps(parameters[c]) > 0,
+                           start_error_left(sub_step, walked_sub_steps(parameters[c])), start_errors);
     store_area_partials(sums.areas, partials, scratch);
     store_partial(partials, APSL_PARTIAL_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.squares), scratch));
     store_partial(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.scaled_squares), scratch));

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A diagonal that bounds the matrix: G ≼ diag(ρ D), ρ_a D_a = Σ_{i∈a} σ_i, with σ_i the greatest eigenvalue of
-// ½ w_i Σ_{a∋i} g gᵀ, or a little more. From the gradients of the last sub-step, scaled by 1/√(ρ D) with the ρ there
-// was. Reference: apsl::reference::diagonal_bound.
+// What bounds the matrix, vertex by vertex: J_i J_iᵀ ≼ s_i diag(|g_{a,i}|²), J_i with the corner gradients around
+// vertex i for rows, and s_i the greatest eigenvalue of Σ_{a∋i} ĝ ĝᵀ, ĝ = g/|g|, or a little more. assemble_triangles
+// makes B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|² of it. Reference: apsl::reference::vertex_bounds.
 #include "gradients.h"
 #include "lanes.h"
 #include "layout.h"
 #include "work_group.h"
-
-// What the bound is multiplied by: it is that of a sub-step before, and the cloth goes on moving.
-#define APSL_BOUND_MARGIN 1.1f
-// Of a triangle that had no extent, and may get any.
-#define APSL_UNKNOWN_BOUND 16.0f
 
 // Symmetric 3×3 matrices.
 typedef struct {
@@ -43,27 +38,34 @@ APSL_INLINE lanes greatest_eigenvalue(apsl_symmetric m) {
     return trace * sqrt(sqrt(sqrt(sqrt(sqrt(sum)))));
 }
 
-// σ_i. Moves 12 B corners, 2 B offsets, 24 B gradients, 4 B ρ D read, 2 B written, a triangle.
-APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global const apsl_solve_state* states,
-                                __global const uint* corner_offsets, __global const uint* corners,
-                                __global const apsl_gradients* gradients, __global const float* bounded_diagonal,
-                                __global float* vertex_bound) {
+// Further safety factor where masses are raised: slivers turn fast.
+#define APSL_RAISED_MARGIN 1.2f
+
+// s_i, from the gradients of the last sub-step; a gradient of zero may get any direction. Moves 12 B corners, 2 B
+// offsets, 24 B gradients read, 2 B written, a triangle; with raised masses 16 B more read.
+APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
+                                __global const apsl_solve_state* states, __global const uint* corner_offsets,
+                                __global const uint* corners, __global const apsl_gradients* gradients,
+                                __global const float4* predicted, __global const float4* motion,
+                                __global float* vertex_bounds) {
     const uint c = (uint)get_group_id(1);
     const apsl_cloth cloth = cloths[c];
     const apsl_range range = share_of((cloth.vertex_count + APSL_LANES - 1u) / APSL_LANES, !states[c].stopped);
     for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
         const uint first = block * APSL_LANES;
         const uint count = min((uint)APSL_LANES, cloth.vertex_count - first);
-        float entries[6 * APSL_LANES] = {0.0f}, greatest[APSL_LANES];
+        float entries[6 * APSL_LANES] = {0.0f}, unknown[APSL_LANES] = {0.0f}, greatest[APSL_LANES];
         for (uint v = 0; v < count; ++v) {
             const uint i = cloth.vertex_begin + first + v;
             float4 on_diagonal = (float4)(0.0f), beside = (float4)(0.0f);
             const uint end = corner_offsets[i + 1];
             for (uint n = corner_offsets[i]; n < end; ++n) {
-                const float4 g = APSL_GRADIENT_UNIT * corner_gradient(gradients, corners[n]);
-                const float4 scaled = bounded_diagonal[APSL_CORNER_TRIANGLE(corners[n])] * g;
+                const float4 g = corner_gradient(gradients, corners[n]);
+                const float squared_length = dot3(g, g);
+                const float4 scaled = g / fmax(squared_length, 1.0f);  // whole numbers: 0, or at least 1
                 on_diagonal += scaled * g;
                 beside += scaled.xxyw * g.yzzw;
+                unknown[v] += squared_length > 0.0f ? 0.0f : 1.0f;
             }
             entries[v] = on_diagonal.x;
             entries[APSL_LANES + v] = on_diagonal.y;
@@ -75,22 +77,10 @@ APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global cons
         const apsl_symmetric sums = {private_lanes(entries, 0), private_lanes(entries, 1), private_lanes(entries, 2),
                                      private_lanes(entries, 3), private_lanes(entries, 4), private_lanes(entries, 5)};
         store_private_lanes(greatest_eigenvalue(sums), greatest);
-        for (uint v = 0; v < count; ++v) vertex_bound[cloth.vertex_begin + first + v] = greatest[v];
-    }
-}
-
-// ρ_a with its margin. Moves 12 B indices, 2 B of σ, 4 B ρ D and 4 B ρ read, 4 B written, a triangle.
-APSL_KERNEL void bound_triangles(__global const apsl_cloth* cloths, __global const apsl_solve_state* states,
-                                 __global const uint* triangles, __global const float* bounded_diagonal,
-                                 __global const float* vertex_bound, __global float* bound) {
-    const uint c = (uint)get_group_id(1);
-    const apsl_cloth cloth = cloths[c];
-    const apsl_range range = share_of(cloth.triangle_count, !states[c].stopped);
-    for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
-        const uint a = cloth.triangle_begin + t;
-        const float sum = vertex_bound[triangles[3u * a]] + vertex_bound[triangles[3u * a + 1u]] +
-                          vertex_bound[triangles[3u * a + 2u]];
-        const float diagonal = bounded_diagonal[a] / bound[a];
-        bound[a] = diagonal > 0.0f ? APSL_BOUND_MARGIN * sum / diagonal : APSL_UNKNOWN_BOUND;
+        for (uint v = 0; v < count; ++v) {
+            const uint i = cloth.vertex_begin + first + v;
+            const bool raised = parameters[c].raises_masses && predicted[i].w < motion[i].w;
+            vertex_bounds[i] = (raised ? APSL_RAISED_MARGIN : 1.0f) * (greatest[v] + unknown[v]);
+        }
     }
 }

@@ -2,10 +2,10 @@
 // Algorithm 1 for cloths that are small or many: one work-group takes one cloth through the whole filter, all sub-steps
 // in a single launch, and every sum that decides something stays in the group. The same steps as the other kernels, in
 // the same order. Reference: apsl::reference::BasicStrainLimiter.
+#include "accept_or_reject.h"
 #include "cg_step.h"
 #include "first_guess.h"
 #include "layout.h"
-#include "never_worse.h"
 #include "offender.h"
 #include "patch_product.h"
 #include "regularization.h"
@@ -22,58 +22,79 @@ APSL_KERNEL void filter_in_one_group(
     __global float4* predicted, __global float4* motion, __global float4* correction,
     __global apsl_gradients* gradients, __global float* residual, __global float* damped_diagonal,
     __global float* product, __global float* direction, __global float* direction_product, __global float* pressure,
-    __global float* ordered_rest_areas, __global float* ordered_regularization, __global const float* positions,
-    ulong position_offset, __global float* velocities, ulong velocity_offset, __global const float* inverse_masses,
-    ulong inverse_mass_offset, __global const float* rest_areas, ulong rest_area_offset,
-    __global const float* regularization, ulong regularization_offset, uint pressure_stride) {
+    __global float* ordered_rest_areas, __global float* ordered_regularization, __global float* start_errors,
+    __global const float* positions, ulong position_offset, __global float* velocities, ulong velocity_offset,
+    __global const float* inverse_masses, ulong inverse_mass_offset, __global const float* rest_areas,
+    ulong rest_area_offset, __global const float* regularization, ulong regularization_offset, uint pressure_stride) {
+    assume_one_group();
     APSL_SCRATCH;
     __local float4 forces[APSL_PATCH_VERTICES];
     const uint c = (uint)get_group_id(1);
     __global apsl_stats* stats = all_stats + c;
-    int sub_steps = 0, iterations = 0;
-    float worst_residual = 0.0f, factor = states[c].adaptive_factor;
-    bool broken = false, converged = true, started = false;
+    int sub_steps = 0;
+    bool started = false;
 
-    const float bad_vertices =
-        group_sum(predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, vertex_order, predicted,
-                                   positions + position_offset, velocities + velocity_offset,
-                                   inverse_masses + inverse_mass_offset),
-                  scratch);
+    const apsl_vertex_sums vertex_sums =
+        predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, walked_sub_steps(parameters[c]) > 0,
+                         vertex_order, predicted, motion, positions + position_offset, velocities + velocity_offset,
+                         inverse_masses + inverse_mass_offset);
+    const float bad_vertices = group_sum(vertex_sums.bad, scratch);
+    const float root_masses = group_sum(vertex_sums.root_masses, scratch);
+    const float extent = group_max(vertex_sums.extent, scratch);
+    const float greatest_mass = greatest_effective_mass(root_masses, group_sum(vertex_sums.movable, scratch));
+    // What only a few places need is in memory: the loop has no registers to spare.
+    if (get_local_id(0) == 0) {
+        states[c].greatest_mass = greatest_mass;
+        states[c].extent = extent;
+        stats->cg_iterations = 0;
+        stats->residual = 0.0f;
+        stats->status = APSL_STATUS_OK;
+        stats->offender = bad_vertices > 0.0f ? APSL_OFFENDER_VERTEX : APSL_OFFENDER_NONE;
+    }
     order_values(cloths[c], parameters[c].enabled, triangle_order, ordered_rest_areas, ordered_regularization,
                  rest_areas + rest_area_offset, regularization + regularization_offset);
-    float2 change = (float2)(0.0f);
+    float capped_rms = 0.0f;
     // A cloth that is off goes round once, with no triangle.
     for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
         group_memory_barrier();
         const apsl_assembly_sums sums = assemble_triangles(
             cloths[c], parameters[c].enabled, parameters[c].regularization,
-            scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_steps), factor, triangles,
-            predicted, gradients, residual, damped_diagonal, ordered_rest_areas, ordered_regularization);
-        const float squared_change = group_sum(sum_of_lanes(sums.areas.squared_change), scratch);
-        const float measured = group_sum(sum_of_lanes(sums.areas.measured), scratch);
+            scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_steps),
+            states[c].adaptive_factor, triangles, predicted, gradients, residual, damped_diagonal, ordered_rest_areas,
+            ordered_regularization, walked_sub_steps(parameters[c]) > 0,
+            started ? start_error_left(sub_steps, walked_sub_steps(parameters[c])) : 0.0f, start_errors);
+        const apsl_area_change change = area_change_in_group(sums.areas, scratch);
         const float not_finite = group_sum(sum_of_lanes(sums.areas.not_finite), scratch);
         apsl_solve solve = begin_solve_in_group(group_sum(sum_of_lanes(sums.squares), scratch),
                                                 group_sum(sum_of_lanes(sums.scaled_squares), scratch));
-        change.x = group_max(max_of_lanes(sums.areas.max_change), scratch);
-        change.y = measured > 0.0f ? sqrt(squared_change / measured) : 0.0f;
-        broken = not_finite > 0.0f || !isfinite(solve.initial_residual);
+        const bool broken =
+            stats->status == APSL_STATUS_DIVERGED || not_finite > 0.0f || !isfinite(solve.initial_residual);
+        capped_rms = change.capped_rms;
         const bool on_the_way = started && sub_steps < walked_sub_steps(parameters[c]);
         going_on = !broken && sub_steps < parameters[c].sub_steps &&
-                   (on_the_way || change.x > parameters[c].target_area_change);
-        if (!started && get_local_id(0) == 0) {
-            stats->initial_max_area_change = change.x;
-            stats->initial_rms_area_change = change.y;
-        }
+                   (on_the_way || change.max > parameters[c].target_area_change);
         // On a walk the first round only looks at its end; the second assembles where it begins.
         const bool starting = !started && going_on && walked_sub_steps(parameters[c]) > 0;
-        started = true;
         group_memory_barrier();
-        start_walking(cloths[c], starting, parameters[c].time_step, walked_sub_steps(parameters[c]), vertex_order,
-                      predicted, motion, correction, positions + position_offset, velocities + velocity_offset);
+        if (get_local_id(0) == 0) {
+            if (!started) store_initial(states + c, stats, change, !broken);
+            states[c].measured = change.measured;
+            store_area_change(stats, change);
+            if (broken) stats->status = APSL_STATUS_DIVERGED;
+        }
+        started = true;
+        if (starting) {  // uniform
+            const float start_not_finite = group_sum(
+                sum_of_lanes(find_start_errors(cloths[c], true, triangles, motion, ordered_rest_areas, start_errors)),
+                scratch);
+            if (start_not_finite > 0.0f && get_local_id(0) == 0) stats->status = APSL_STATUS_DIVERGED;
+            group_memory_barrier();
+            start_walking(cloths[c], true, parameters[c].time_step, walked_sub_steps(parameters[c]), vertex_order,
+                          predicted, motion, correction, velocities + velocity_offset);
+        }
         if (going_on && !starting) {
             if (APSL_KEPT_PRESSURES > 0) {
                 copy_pressures(cloths[c], pressure, pressure + kept_place(sub_steps, pressure_stride));
-                iterations += 1;  // the product with a guess costs as much
                 group_memory_barrier();
             }
             iterate_in_group(&solve, APSL_KEPT_PRESSURES > 0, parameters + c, cloths + c, patches, patch_vertices,
@@ -83,33 +104,56 @@ APSL_KERNEL void filter_in_one_group(
                 copy_pressures(cloths[c], pressure + kept_place(sub_steps, pressure_stride), pressure);
             const bool solved = APSL_KEPT_PRESSURES > 0 || solve.iterations > 0;
             const bool walking = walked_sub_steps(parameters[c]) > 0;
-            displace_vertices(cloths[c], solved && !walking, corner_offsets, corners, gradients, pressure, predicted);
-            walk_vertices(cloths[c], walking, solved, sub_steps, walked_sub_steps(parameters[c]), corner_offsets,
-                          corners, gradients, pressure, predicted, motion, correction);
+            const bool raises_masses = parameters[c].raises_masses != 0;
+            const apsl_walk walk = {sub_steps,
+                                    walked_sub_steps(parameters[c]),
+                                    solved,
+                                    raises_masses,
+                                    raises_masses && sub_steps + 1 < parameters[c].sub_steps,
+                                    states[c].greatest_mass};
+            if (walking)  // uniform
+                walk_vertices(cloths[c], true, walk, corner_offsets, corners, gradients, pressure, predicted, motion,
+                              correction);
+            else
+                displace_vertices(cloths[c], solved, corner_offsets, corners, gradients, pressure, predicted);
             const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
-            factor = adapted_factor(factor, parameters[c], solve.iterations, met);
-            converged = converged && met;
+            if (get_local_id(0) == 0) {
+                states[c].adaptive_factor =
+                    adapted_factor(states[c].adaptive_factor, parameters[c], solve.iterations, met);
+                // The product with a guess costs as much.
+                stats->cg_iterations += solve.iterations + (APSL_KEPT_PRESSURES > 0 ? 1 : 0);
+                if (!met) stats->status = APSL_STATUS_NOT_CONVERGED;
+                if (solve.initial_residual > 0.0f)
+                    stats->residual = fmax(stats->residual, relative_residual(solve.residual, solve.initial_residual));
+            }
             sub_steps += 1;
-            iterations += solve.iterations;
-            if (solve.initial_residual > 0.0f)
-                worst_residual = fmax(worst_residual, relative_residual(solve.residual, solve.initial_residual));
         }
     }
-    broken = broken || bad_vertices > 0.0f;
+    group_memory_barrier();
+    const bool bad_vertex = stats->offender == APSL_OFFENDER_VERTEX;
+    const bool broken = bad_vertex || stats->status == APSL_STATUS_DIVERGED;
+    const apsl_raised_masses raised = raised_masses(cloths[c], parameters[c].raises_masses, predicted, motion);
+    const float raised_vertices = group_sum(raised.count, scratch);
+    const float mass_ratio = group_max(raised.greatest_ratio, scratch);
+    const apsl_area_change initial = stored_initial(states + c, stats);
+    const apsl_area_change change = {stats->max_area_change, stats->rms_area_change, capped_rms, states[c].measured};
+    const apsl_verdict verdict =
+        judge(initial, change, greatest_change_at_rest(states[c].extent, states[c].measured, cloths[c].triangle_count));
+    group_memory_barrier();  // all have read the statistics
     if (get_local_id(0) == 0) {
-        states[c].adaptive_factor = factor;
+        const bool off = !parameters[c].enabled;
         stats->sub_steps = sub_steps;
-        stats->cg_iterations = iterations;
-        stats->residual = worst_residual;
-        stats->status = converged ? APSL_STATUS_OK : APSL_STATUS_NOT_CONVERGED;
-        const bool worse = is_worse(stats, change.x, change.y);
+        store_area_change(stats, broken || verdict.worse ? initial : change);
+        if (verdict.rose) stats->status = APSL_STATUS_WORSENED;
         if (broken) stats->status = APSL_STATUS_DIVERGED;
-        if (!parameters[c].enabled) stats->status = APSL_STATUS_OFF;
-        states[c].discarded = broken || worse || sub_steps == 0;
+        if (off) stats->status = APSL_STATUS_OFF;
+        stats->raised_vertices = off ? 0u : (uint)raised_vertices;
+        stats->greatest_mass_ratio = off ? 0.0f : mass_ratio;
+        states[c].discarded = broken || verdict.worse || sub_steps == 0;
     }
     group_memory_barrier();
-    name_offender(stats, broken, bad_vertices > 0.0f, cloths[c], vertex_order, triangle_order, triangles, predicted,
-                  ordered_rest_areas, scratch);
+    name_offender(stats, search_for(broken, bad_vertex, verdict, change.max), cloths[c], vertex_order, triangle_order,
+                  triangles, predicted, ordered_rest_areas, scratch);
     store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, walked_sub_steps(parameters[c]) > 0,
                       vertex_order, predicted, correction, positions + position_offset, velocities + velocity_offset);
 }

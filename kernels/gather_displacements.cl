@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Eq. (6) with λ = p Δt²: x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, on to the next of small steps, and how the solve ended.
-// Reference: apsl::reference, displacements and strain_limiter. Moves 12 B corners, 2 B offsets, 24 B gradients, 4 B
-// pressure, 16 B position read and written, a triangle; in a walk 32 B more.
+// Reference: apsl::reference, displacements, effective_masses and strain_limiter. Moves 12 B corners, 2 B offsets, 24 B
+// gradients, 4 B pressure, 16 B position read and written, a triangle; in a walk 32 B and the 4 B of `stiffening`
+// more.
 #include "first_guess.h"
 #include "layout.h"
 #include "regularization.h"
@@ -27,8 +28,15 @@ APSL_KERNEL void gather_displacements(__global const apsl_cloth* cloths, __globa
     const bool walking = walked_sub_steps(parameters[c]) > 0;
     displace_vertices(cloths[c], !walking && !states[c].stopped && solved, corner_offsets, corners, gradients, pressure,
                       predicted);
-    walk_vertices(cloths[c], walking && !states[c].stopped, solved, sub_step, walked_sub_steps(parameters[c]),
-                  corner_offsets, corners, gradients, pressure, predicted, motion, correction);
+    const bool raises_masses = parameters[c].raises_masses != 0;
+    const apsl_walk walk = {sub_step,
+                            walked_sub_steps(parameters[c]),
+                            solved,
+                            raises_masses,
+                            raises_masses && sub_step + 1 < parameters[c].sub_steps,
+                            states[c].greatest_mass};
+    walk_vertices(cloths[c], walking && !states[c].stopped, walk, corner_offsets, corners, gradients, pressure,
+                  predicted, motion, correction);
     const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     if (get_group_id(0) == 0 && get_local_id(0) == 0 && !states[c].stopped) {
         // A polynomial is as long as it is, and nothing measures what it leaves.

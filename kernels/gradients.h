@@ -16,7 +16,7 @@
 typedef struct {
     short4 corner_0, corner_1, corner_2;  // w is zero
     float shift;                          // (α − 1)/α
-    float unused;
+    float stiffening;                     // √(α D) / A, m⁻¹ kg^(−1/2): see apsl_corner_sums
 } apsl_gradients;
 
 #define APSL_GRADIENT_UNIT (1.0f / 32767.0f)

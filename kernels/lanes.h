@@ -41,6 +41,14 @@ APSL_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global
     return v;
 }
 
+// One value of each vertex in place of four.
+APSL_INLINE lanes load_corner_values(__global const uint* triangles, __global const float* values, uint first,
+                                     uint corner) {
+    __global const uint* index = triangles + 3u * first + corner;
+    return (float8)(values[index[0]], values[index[3]], values[index[6]], values[index[9]], values[index[12]],
+                    values[index[15]], values[index[18]], values[index[21]]);
+}
+
 APSL_INLINE lanes load_lanes(__global const float* values, uint first) {
     return vload8(0, values + first);
 }
@@ -110,6 +118,11 @@ APSL_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global
     v.z = value.z;
     v.w = value.w;
     return v;
+}
+
+APSL_INLINE lanes load_corner_values(__global const uint* triangles, __global const float* values, uint first,
+                                     uint corner) {
+    return values[triangles[3u * first + corner]];
 }
 
 APSL_INLINE lanes load_lanes(__global const float* values, uint first) {

@@ -41,7 +41,8 @@ typedef struct {
     apsl_int adaptive_iterations;  // 0: α stays as given
     apsl_int walked;               // sub-steps that move on by a part of Δt; 0: all correct at its end
     apsl_int enabled;              // 0: the cloth is left alone in this call
-    apsl_int padding[6];
+    apsl_int raises_masses;        // 0: every vertex weighs what was given
+    apsl_int padding[5];
 } apsl_parameters;
 
 // Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.
@@ -62,6 +63,8 @@ typedef struct {
     apsl_int status;
     apsl_int offender;
     apsl_uint offender_index;
+    apsl_uint raised_vertices;
+    float greatest_mass_ratio;
 } apsl_stats;
 
 #define APSL_STATUS_OK 0
@@ -76,6 +79,8 @@ typedef struct {
 
 // A greatest area change up to which a cloth is at rest: 32-bit positions tell no better.
 #define APSL_AT_REST 1e-5f
+// Of the greatest coordinate: what moves a vertex of a 32-bit position, twice over.
+#define APSL_POSITION_RESOLUTION 2.4e-7f
 
 // Where a cloth's solve stands. Each field is written by one work-group in a launch that does not read it elsewhere.
 typedef struct {
@@ -87,6 +92,10 @@ typedef struct {
     float step[2];              // CG step length, of even and of odd iterations
     apsl_int solve_iterations;  // done in the present solve; at 0 there is no pressure to read
     float adaptive_factor;      // ≥ 1, multiplies α − 1; outlives the call
+    float initial_capped_rms;   // RMS area change at x̃ + Δt ṽ, each triangle's counted as at most 1
+    float greatest_mass;        // of what a vertex may effectively weigh, kg
+    float extent;               // greatest |coordinate|, m; kept by filter_in_one_group alone
+    float measured;             // Σ A⁰, m²; likewise
 } apsl_solve_state;
 
 // Partial results of the work-groups of a launch, one float a group for each of these.
@@ -101,7 +110,13 @@ typedef struct {
 #define APSL_PARTIAL_NOT_FINITE 8
 #define APSL_PARTIAL_GUESS 9  // r̄·y₀
 #define APSL_PARTIAL_BAD_VERTICES 10
-#define APSL_PARTIAL_KINDS 11
+#define APSL_PARTIAL_CAPPED_CHANGE 11  // as the squared change, each triangle's counted as at most 1
+#define APSL_PARTIAL_ROOT_MASSES 12    // Σ √m over movable vertices, √kg
+#define APSL_PARTIAL_MOVABLE 13        // vertices
+#define APSL_PARTIAL_RAISED 14         // vertices that weigh more than given
+#define APSL_PARTIAL_MASS_RATIO 15     // their greatest mass over the one given
+#define APSL_PARTIAL_EXTENT 16         // greatest |coordinate| at x̃ + Δt ṽ, m
+#define APSL_PARTIAL_KINDS 17
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSL_TRIANGLE_ALIGNMENT 16

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Names what broke a call: the first vertex or triangle of a cloth, in the caller's order. Read only when something
-// did. Reference: apsl::reference, strain_limiter.
+// Names what broke a call, or the triangle that it left worse: the first of the cloth, in the caller's order. Read only
+// when there is one. Reference: apsl::reference, strain_limiter.
 #ifndef APSL_OFFENDER_H
 #define APSL_OFFENDER_H
 
@@ -19,42 +19,63 @@ APSL_INLINE uint group_min(uint value, __local float* scratch) {
     return ((uint)high << 16) | (uint)-group_max(-low, scratch);
 }
 
-// The first of the cloth's bad vertices, or where there are none (`vertices_are_bad` is false) the first of its bad
-// triangles, in this work-item's share; nobody where the call is not `broken`. `rest_areas` are in the limiter's order.
-APSL_INLINE uint first_offender(bool broken, bool vertices_are_bad, apsl_cloth cloth, __global const uint* vertex_order,
+// What to look for; the same in all of a work-group.
+typedef struct {
+    bool bad_vertices, bad_triangles;
+    bool worst_triangle;    // the one whose area change is the greatest
+    float greatest_change;  // which is this
+} apsl_offender_search;
+
+APSL_INLINE apsl_offender_search search_for(bool broken, bool bad_vertices, apsl_verdict verdict,
+                                            float greatest_change) {
+    apsl_offender_search search;
+    search.bad_vertices = broken && bad_vertices;
+    search.bad_triangles = broken && !bad_vertices;
+    search.worst_triangle = !broken && verdict.names;
+    search.greatest_change = greatest_change;
+    return search;
+}
+
+// The first vertex or triangle found in this work-item's share. `rest_areas` are in the limiter's order.
+APSL_INLINE uint first_offender(apsl_offender_search search, apsl_cloth cloth, __global const uint* vertex_order,
                                 __global const uint* triangle_order, __global const uint* triangles,
                                 __global const float4* predicted, __global const float* rest_areas) {
     uint first = APSL_NOBODY;
-    const uint vertices = broken && vertices_are_bad ? cloth.vertex_count : 0u;
+    const uint vertices = search.bad_vertices ? cloth.vertex_count : 0u;
     for (uint v = (uint)get_local_id(0); v < vertices; v += APSL_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v;
         if (is_bad_vertex(predicted[place])) first = min(first, vertex_order[place] - cloth.vertex_begin);
     }
-    const uint blocks = broken && !vertices_are_bad ? blocks_of(cloth) : 0u;
+    // Another kernel found the greatest change, and may have rounded it otherwise.
+    const float least_change = search.worst_triangle ? search.greatest_change * (1.0f - 1e-5f) : INFINITY;
+    const uint blocks = search.bad_triangles || search.worst_triangle ? blocks_of(cloth) : 0u;
     for (uint block = (uint)get_local_id(0); block < blocks; block += APSL_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + block * APSL_LANES;
-        const lanes witness = area_witness(load_triangles(triangles, predicted, a), load_lanes(rest_areas, a));
+        const apsl_triangle_geometry triangle = load_triangles(triangles, predicted, a);
+        const lanes rest_area = load_lanes(rest_areas, a);
+        const lanes witness = area_witness(triangle, rest_area), change = relative_change(triangle, rest_area);
         const uint count = min((uint)APSL_LANES, cloth.triangle_count - block * APSL_LANES);
-        for (uint n = 0; n < count; ++n)
-            if (!(fabs(((const float*)&witness)[n]) < INFINITY))
+        for (uint n = 0; n < count; ++n) {
+            const bool bad = search.bad_triangles && !(fabs(((const float*)&witness)[n]) < INFINITY);
+            if (bad || ((const float*)&change)[n] >= least_change)
                 first = min(first, triangle_order[a + n] - cloth.rest_area_begin);
+        }
     }
     return first;
 }
 
-// By all of a work-group, broken or not: there are barriers inside.
-APSL_INLINE void name_offender(__global apsl_stats* stats, bool broken, bool vertices_are_bad, apsl_cloth cloth,
+// By all of a work-group, whatever is looked for: there are barriers inside.
+APSL_INLINE void name_offender(__global apsl_stats* stats, apsl_offender_search search, apsl_cloth cloth,
                                __global const uint* vertex_order, __global const uint* triangle_order,
                                __global const uint* triangles, __global const float4* predicted,
                                __global const float* rest_areas, __local float* scratch) {
     const uint first = group_min(
-        first_offender(broken, vertices_are_bad, cloth, vertex_order, triangle_order, triangles, predicted, rest_areas),
-        scratch);
+        first_offender(search, cloth, vertex_order, triangle_order, triangles, predicted, rest_areas), scratch);
     if (get_local_id(0) == 0) {
         const bool named = first != APSL_NOBODY;
-        stats->offender = !named             ? APSL_OFFENDER_NONE
-                          : vertices_are_bad ? APSL_OFFENDER_VERTEX
-                                             : APSL_OFFENDER_TRIANGLE;
+        stats->offender = !named                ? APSL_OFFENDER_NONE
+                          : search.bad_vertices ? APSL_OFFENDER_VERTEX
+                                                : APSL_OFFENDER_TRIANGLE;
         stats->offender_index = named ? first : 0u;
     }
 }

@@ -8,6 +8,7 @@
 #include "gradients.h"
 #include "layout.h"
 #include "regularization.h"
+#include "small_steps.h"
 #include "triangle_geometry.h"
 #include "work_group.h"
 
@@ -51,20 +52,35 @@ APSL_INLINE void order_values(apsl_cloth cloth, bool active, __global const uint
     }
 }
 
+// Safety factor of the bound of the matrix: the directions in it are those of an earlier sub-step, and the cloth has
+// moved since.
+#define APSL_BOUND_MARGIN 1.1f
+
+// B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|². Reference: apsl::reference::diagonal_bound.
+APSL_INLINE lanes bounded_diagonal(apsl_triangle_geometry t, __global const uint* triangles,
+                                   __global const float* vertex_bounds, uint first) {
+    lanes sum = 0.0f;
+    for (uint k = 0; k < 3; ++k)
+        sum += load_corner_values(triangles, vertex_bounds, first, k) * t.inverse_mass[k] * squared_length(t.edge[k]);
+    return 0.5f * sum;
+}
+
 typedef struct {
     apsl_area_sums areas;
     lanes squares, scaled_squares;  // of the right-hand side, plain and scaled
 } apsl_assembly_sums;
 
-// gradients[a], residual[a] = s (A − A⁰), damped_diagonal[a] = α D. `alpha` holds for all triangles, unless
-// `regularization` has one for each. Both come from order_values. For a Chebyshev solve `regularization` holds ρ, the
-// bound of the matrix over D, which takes the place of α in the scaling, and there is no damping.
+// gradients[a], residual[a] = s b, damped_diagonal[a] = α D. b = A − A⁰, in a walk less the share `error_left` of
+// `start_errors`. `alpha` holds for all triangles, unless `regularization` has one for each. Both come from
+// order_values. For a Chebyshev solve `regularization` holds s_i of the vertices, B takes the place of α D, and there
+// is no damping.
 APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active, float alpha, float damping,
                                                   float adaptive_factor, __global const uint* triangles,
                                                   __global const float4* predicted, __global apsl_gradients* gradients,
                                                   __global float* residual, __global float* damped_diagonal,
                                                   __global const float* rest_areas,
-                                                  __global const float* regularization) {
+                                                  __global const float* regularization, bool walking, float error_left,
+                                                  __global const float* start_errors) {
     const apsl_range range = share_of(blocks_of(cloth), active);
     apsl_assembly_sums sums;
     sums.areas = no_areas();
@@ -74,11 +90,17 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         const uint a = cloth.triangle_begin + block * APSL_LANES;
         const apsl_triangle_geometry triangle = load_triangles(triangles, predicted, a);
         const lanes rest_area = load_lanes(rest_areas, a);
+        lanes excess = triangle.area - rest_area;
+        if (walking) {  // uniform
+            if (error_left > 0.0f) excess -= error_left * load_lanes(start_errors, a);
+            const lanes least = (1.0f - APSL_GREATEST_GROWTH) * triangle.area;
+            excess = select(excess, least, excess < least);  // a NaN stays
+        }
 #if APSL_CHEBYSHEV
         (void)alpha;
         (void)damping;
         (void)adaptive_factor;
-        const lanes effective = load_lanes(regularization, a), shift = 0.0f;
+        const lanes damped = APSL_BOUND_MARGIN * bounded_diagonal(triangle, triangles, regularization, a), shift = 0.0f;
 #else
 #if APSL_REGULARIZATION_PER_TRIANGLE
         (void)alpha;
@@ -88,11 +110,10 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         const lanes given = alpha;
 #endif
         const lanes effective = effective_regularization(given, damping, adaptive_factor);
-        const lanes shift = (effective - 1.0f) / effective;
+        const lanes shift = (effective - 1.0f) / effective, damped = effective * triangle.diagonal;
 #endif
-        const lanes damped = effective * triangle.diagonal;
         const lanes scale = jacobi_scale(damped, rest_area);
-        const lanes stretch = select((lanes)(0.0f), triangle.area - rest_area, scale > 0.0f);
+        const lanes stretch = select((lanes)(0.0f), excess, scale > 0.0f);
         const lanes r = scale * stretch;
 
         lanes_int words[8];
@@ -100,7 +121,7 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         pack_gradient(triangle, 1, scale, words + 2);
         pack_gradient(triangle, 2, scale, words + 4);
         words[6] = bits_of(shift);
-        words[7] = 0;
+        words[7] = bits_of(select((lanes)(0.0f), 1.0f / (scale * triangle.area), scale * triangle.area > 0.0f));
         store_records(words, (__global int4*)gradients, a);
         store_lanes(r, residual, a);
         store_lanes(damped, damped_diagonal, a);
@@ -109,6 +130,23 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         add_areas(&sums.areas, triangle, rest_area);
     }
     return sums;
+}
+
+// start_errors[a] = A − A⁰ at the start of the step, whose vertices are in `start`; 0 where there is no rest area.
+// Returns how many of this work-item's are not finite.
+APSL_INLINE lanes find_start_errors(apsl_cloth cloth, bool active, __global const uint* triangles,
+                                    __global const float4* start, __global const float* rest_areas,
+                                    __global float* start_errors) {
+    const apsl_range range = share_of(blocks_of(cloth), active);
+    lanes not_finite = 0.0f;
+    for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + block * APSL_LANES;
+        const lanes area = load_triangles(triangles, start, a).area, rest_area = load_lanes(rest_areas, a);
+        const lanes error = select((lanes)(0.0f), area - rest_area, rest_area > 0.0f);
+        store_lanes(error, start_errors, a);
+        not_finite += select((lanes)(1.0f), (lanes)(0.0f), fabs(error) < INFINITY);
+    }
+    return not_finite;
 }
 
 // The areas alone.

@@ -7,6 +7,32 @@
 #include "gradients.h"
 #include "layout.h"
 
+typedef struct {
+    float4 force;     // Σ_{a∋i} y_a ḡ_{a,i}; w is zero
+    float stiffness;  // K_i w_i = Σ_{a∋i} max(y_a, 0) √(α D_a) / A_a |ḡ_{a,i}|²: geometric stiffness over mass
+} apsl_corner_sums;
+
+// Reference: apsl::reference::geometric_stiffness. With λ = y/√(α D) and ḡ = √(w/2) g/√(α D), λ |g|²/(2A) is
+// y √(α D)/A |ḡ|²/w.
+APSL_INLINE apsl_corner_sums sums_over_corners(__global const uint* corner_offsets, __global const uint* corners,
+                                               __global const apsl_gradients* gradients, __global const float* pressure,
+                                               uint i) {
+    apsl_corner_sums sums;
+    sums.force = (float4)(0.0f);
+    sums.stiffness = 0.0f;
+    const uint end = corner_offsets[i + 1];
+    for (uint n = corner_offsets[i]; n < end; ++n) {
+        const uint corner = corners[n], a = APSL_CORNER_TRIANGLE(corner);
+        const float4 g = corner_gradient(gradients, corner);
+        const float y = pressure[a];
+        sums.force += y * g;
+        sums.stiffness += fmax(y, 0.0f) * gradients[a].stiffening * dot3(g, g);
+    }
+    sums.force *= APSL_GRADIENT_UNIT;
+    sums.stiffness *= APSL_GRADIENT_UNIT * APSL_GRADIENT_UNIT;
+    return sums;
+}
+
 // Σ_{a∋i} values_a ḡ_{a,i}; w is zero.
 APSL_INLINE float4 sum_over_corners(__global const uint* corner_offsets, __global const uint* corners,
                                     __global const apsl_gradients* gradients, __global const float* values, uint i) {

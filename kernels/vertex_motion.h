@@ -4,8 +4,10 @@
 #ifndef APSL_VERTEX_MOTION_H
 #define APSL_VERTEX_MOTION_H
 
+#include "effective_mass.h"
 #include "gradients.h"
 #include "layout.h"
+#include "small_steps.h"
 #include "vertex_gather.h"
 #include "work_group.h"
 
@@ -24,10 +26,6 @@
 #endif
 #ifndef APSL_INVERSE_MASS_STRIDE
 #define APSL_INVERSE_MASS_STRIDE 1
-#endif
-// Positions are those at the end of the step, in and out; there are no velocities.
-#ifndef APSL_POSITIONS_ONLY
-#define APSL_POSITIONS_ONLY 0
 #endif
 
 APSL_INLINE float3 load_vector(__global const float* x, ulong component_stride) {
@@ -76,40 +74,48 @@ APSL_INLINE bool is_bad_vertex(float4 predicted) {
            predicted.w < 0.0f;
 }
 
-// predicted = (x̃ + Δt ṽ, inverse mass), in the limiter's order of vertices. Returns how many of this work-item's are
-// bad.
-APSL_INLINE float predict_vertices(apsl_cloth cloth, bool active, float time_step, __global const uint* vertex_order,
-                                   __global float4* predicted, __global const float* positions,
-                                   __global const float* velocities, __global const float* inverse_masses) {
+typedef struct {
+    float bad;          // vertices
+    float root_masses;  // Σ √m of movable vertices
+    float movable;      // vertices
+    float extent;       // greatest |coordinate|, m
+} apsl_vertex_sums;
+
+// predicted = (x̃ + Δt ṽ, w), and before a walk motion = (x̃, w), in the limiter's order of vertices. Returns this
+// work-item's sums.
+APSL_INLINE apsl_vertex_sums predict_vertices(apsl_cloth cloth, bool active, float time_step, bool walking,
+                                              __global const uint* vertex_order, __global float4* predicted,
+                                              __global float4* motion, __global const float* positions,
+                                              __global const float* velocities, __global const float* inverse_masses) {
     const apsl_range range = share_of(cloth.vertex_count, active);
-    float bad = 0.0f;
+    apsl_vertex_sums sums = {0.0f, 0.0f, 0.0f, 0.0f};
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
-        const uint i = vertex_order[cloth.vertex_begin + v];
-        const float4 x = (float4)(end_of_step(positions, velocities, i, time_step),
-                                  inverse_masses[(ulong)i * APSL_INVERSE_MASS_STRIDE]);
-        predicted[cloth.vertex_begin + v] = x;
-        bad += is_bad_vertex(x) ? 1.0f : 0.0f;
+        const uint place = cloth.vertex_begin + v, i = vertex_order[place];
+        const float w = inverse_masses[(ulong)i * APSL_INVERSE_MASS_STRIDE];
+        const float4 x = (float4)(end_of_step(positions, velocities, i, time_step), w);
+        predicted[place] = x;
+        if (walking) motion[place] = (float4)(load_position(positions, i), w);
+        sums.bad += is_bad_vertex(x) ? 1.0f : 0.0f;
+        sums.root_masses += w > 0.0f ? rsqrt(w) : 0.0f;
+        sums.movable += w > 0.0f ? 1.0f : 0.0f;
+        sums.extent = fmax(sums.extent, fmax(fabs(x.x), fmax(fabs(x.y), fabs(x.z))));
     }
-    return bad;
+    return sums;
 }
 
-// Sub-steps that move on by a part of Δt: none where there are no velocities, which the compiler then knows.
-APSL_INLINE int walked_sub_steps(apsl_parameters parameters) {
-    return APSL_POSITIONS_ONLY ? 0 : parameters.walked;
-}
-
-// The first of `walked` parts of the step: predicted = x̃ + Δt ṽ / walked, motion = Δt ṽ, correction = 0.
+// The first of `walked` parts of the step: predicted = x̃ + Δt ṽ / walked, motion = (Δt ṽ, w), correction = 0. The w of
+// `correction` is the kept stiffness K.
 APSL_INLINE void start_walking(apsl_cloth cloth, bool active, float time_step, int walked,
                                __global const uint* vertex_order, __global float4* predicted, __global float4* motion,
-                               __global float4* correction, __global const float* positions,
-                               __global const float* velocities) {
+                               __global float4* correction, __global const float* velocities) {
     const apsl_range range = share_of(cloth.vertex_count, active);
     const float part = 1.0f / (float)walked;
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
-        const uint place = cloth.vertex_begin + v, i = vertex_order[place];
-        const float3 step = time_step * load_velocity(velocities, i);
-        predicted[place].xyz = fma((float3)(part), step, load_position(positions, i));
-        motion[place] = (float4)(step, 0.0f);
+        const uint place = cloth.vertex_begin + v;
+        const float3 step = time_step * load_velocity(velocities, vertex_order[place]);
+        const float4 start = motion[place];
+        predicted[place] = (float4)(fma((float3)(part), step, start.xyz), start.w);
+        motion[place] = (float4)(step, start.w);
         correction[place] = (float4)(0.0f);
     }
 }
@@ -128,26 +134,50 @@ APSL_INLINE void displace_vertices(apsl_cloth cloth, bool active, __global const
     }
 }
 
-// Likewise in sub-step `sub_step` of a walk, and on to the next part. A displacement in the part before changes the
-// velocity by walked · Δx / Δt, and so carries on through the parts that are left: what it adds to the end of the step
-// is kept in `correction`, which stays exactly zero where nothing is corrected.
-APSL_INLINE void walk_vertices(apsl_cloth cloth, bool active, bool solved, int sub_step, int walked,
-                               __global const uint* corner_offsets, __global const uint* corners,
-                               __global const apsl_gradients* gradients, __global const float* pressure,
-                               __global float4* predicted, __global float4* motion, __global float4* correction) {
+// A sub-step of a walk. The same for all vertices of a cloth.
+typedef struct {
+    int sub_step, walked;
+    bool solved;          // there are pressures
+    bool raises_masses;   // this cloth's vertices may weigh more than given
+    bool renews_masses;   // from the next sub-step on
+    float greatest_mass;  // kg
+} apsl_walk;
+
+// x_i += Δx_i, and on to the next part. A displacement in the part before changes the velocity by walked · Δx / Δt, and
+// so carries on through the parts that are left: what it adds to the end of the step is kept in `correction`, which
+// stays exactly zero where nothing is corrected.
+APSL_INLINE void walk_vertices(apsl_cloth cloth, bool active, apsl_walk walk, __global const uint* corner_offsets,
+                               __global const uint* corners, __global const apsl_gradients* gradients,
+                               __global const float* pressure, __global float4* predicted, __global float4* motion,
+                               __global float4* correction) {
     const apsl_range range = share_of(cloth.vertex_count, active);
-    const float parts = (float)walked;
-    const float parts_left = fmax((float)(walked - sub_step), 1.0f);
-    const float onward = sub_step + 1 < walked ? 1.0f / parts : 0.0f;
+    const float parts = (float)walk.walked;
+    const float parts_left = fmax((float)(walk.walked - walk.sub_step), 1.0f);
+    const float onward = walk.sub_step + 1 < walk.walked ? 1.0f / parts : 0.0f;
     for (uint v = range.first; v < range.end; v += APSL_WORK_GROUP_SIZE) {
         const uint i = cloth.vertex_begin + v;
         float4 x = predicted[i], step = motion[i];
-        if (solved && x.w > 0.0f) {
-            const float4 change = -sqrt(2.0f * x.w) * sum_over_corners(corner_offsets, corners, gradients, pressure, i);
-            x += change;
-            step += parts * change;
-            motion[i] = step;
-            correction[i] += parts_left * change;
+        const float given = step.w, effective = x.w;
+        step.w = 0.0f;
+        if (effective > 0.0f) {
+            float4 total = correction[i];
+            float tension = 0.0f;
+            if (walk.solved) {
+                const apsl_corner_sums sums = sums_over_corners(corner_offsets, corners, gradients, pressure, i);
+                tension = sums.stiffness / effective;
+                const float taken =
+                    walk.raises_masses ? share_taken(given, effective, tension, walk.greatest_mass) : 1.0f;
+                const float4 change = -taken * sqrt(2.0f * effective) * sums.force;
+                x += change;
+                step += parts * change;
+                total += parts_left * change;  // its w is K
+                motion[i] = (float4)(step.xyz, given);
+            }
+            if (walk.renews_masses) {
+                total.w = fmax(tension, APSL_STIFFNESS_KEPT * total.w);
+                x.w = effective_inverse_mass(given, total.w, walk.greatest_mass);
+            }
+            correction[i] = total;
         }
         predicted[i] = x + onward * step;
     }

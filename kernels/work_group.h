@@ -19,6 +19,17 @@ typedef struct {
     uint first, end;  // this work-item takes first, first + APSL_WORK_GROUP_SIZE, … below end
 } apsl_range;
 
+// In a kernel that is launched with one work-group a cloth: the compiler then knows every share, and holds fewer
+// values.
+APSL_INLINE void assume_one_group(void) {
+#ifdef __has_builtin
+#if __has_builtin(__builtin_assume)
+    __builtin_assume(get_num_groups(0) == 1);
+    __builtin_assume(get_group_id(0) == 0);
+#endif
+#endif
+}
+
 // This work-item's share of `count` elements, or nothing where the launch has nothing to do. Chunks begin at multiples
 // of 16 elements. An empty range, not an early return: barriers follow.
 APSL_INLINE apsl_range share_of(uint count, bool active) {

@@ -6,11 +6,11 @@
 
 namespace apsl {
 
-/// What the bound of the matrix is multiplied by: it is that of a sub-step before, and the cloth goes on moving.
+/// Safety factor of the bound of the matrix: the directions in it are those of an earlier sub-step, and the cloth has
+/// moved since.
 inline constexpr float bound_margin = 1.1f;
-/// The bound, over D, of a triangle that had no extent when bounds were made, which may get any: several times that of
-/// a triangle in a flat mesh, so that it is held back until there is a bound for it.
-inline constexpr float unknown_bound = 16.0f;
+/// Further safety factor at vertices whose masses are raised: slivers turn fast.
+inline constexpr float raised_margin = 1.2f;
 
 /// Products with the matrix in a Chebyshev solve, whose polynomial has one degree more: at least 1, at most `most`.
 ///

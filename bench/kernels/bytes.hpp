@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Bytes each kernel must move at least once, counted from the layouts (32-bit, strides of 3). Caches are taken to be
-// perfect: what several triangles share (a position, a vertex's force, a neighbour's residual) counts once.
+// perfect: what several triangles share (a position, a vertex's force, a neighbour's residual) counts once. Steps are
+// whole, as the benchmarks take them; what a walk moves besides, the kernels' headers say.
 #pragma once
 
 #include <array>
@@ -33,6 +34,15 @@ constexpr std::array traffic_table{
     Traffic{"order_triangle_values", 0, 12, 0},
     // predicted; indices 12, ordered rest area read; record, residual, damped_diagonal written
     Traffic{"assemble_gradients", 16, 56, 0},
+    // predicted, motion; indices 12, ordered rest area read, start error written
+    Traffic{"measure_step", 32, 20, 0},
+    // vertex_order, motion, velocity read; predicted, motion, correction written
+    Traffic{"start_walk", 80, 0, 0},
+    // corner offset, bound written; corners 12, gradients 24 read
+    Traffic{"bound_vertices", 8, 36, 0},
+    // corner offset, patch_vertices; corners 12, gradients 24, local_triangles 6, right-hand side, y and the y before
+    // read, y after written; the first two products find no y before, the first no y either
+    Traffic{"chebyshev_step", 8, 58, 0, 12},
     // row offset, record read; column 4 and shared code 1 read, value written
     Traffic{"assemble_pressure_csr", 0, 36, 9},
     // row offset, residual read, product written; value and column read

@@ -11,14 +11,15 @@ namespace {
 
 /// The part of the filter that a kernel belongs to.
 std::string phase_of(const std::string& kernel) {
-    static const std::array<std::pair<const char*, std::vector<std::string>>, 6> phases{{
-        {"matrix and right-hand side", {"assemble_gradients", "assemble_pressure_csr"}},
+    static const std::array<std::pair<const char*, std::vector<std::string>>, 7> phases{{
+        {"matrix and right-hand side", {"bound_vertices", "assemble_gradients", "assemble_pressure_csr"}},
         {"CG: apply", {"matrix_free_apply_dot", "csr_spmv_dot"}},
         {"CG: vectors", {"cg_update"}},
+        {"Chebyshev", {"chebyshev_step"}},
         {"displacements", {"gather_displacements"}},
         {"begin and end",
-         {"set_parameters", "predict_positions", "begin_call", "start_walk", "begin_solve", "measure_area_change",
-          "end_call", "update_velocities"}},
+         {"set_parameters", "predict_positions", "order_triangle_values", "measure_step", "begin_call", "start_walk",
+          "begin_solve", "measure_area_change", "end_call", "update_velocities"}},
         {"all in one launch", {"filter_in_one_group"}},
     }};
     for (const auto& [phase, kernels] : phases)

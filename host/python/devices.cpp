@@ -2,6 +2,7 @@
 #include "devices.hpp"
 
 #include "opencl_error.hpp"
+#include "process.hpp"
 
 #include <apsl/error.hpp>
 
@@ -31,6 +32,7 @@ Number number(cl_device_id device, cl_device_info what) {
 }  // namespace
 
 std::vector<Device> devices() {
+    enter_opencl();
     cl_uint platform_count = 0;
     clGetPlatformIDs(0, nullptr, &platform_count);  // the loader calls it an error where there is none
     if (platform_count == 0) return {};

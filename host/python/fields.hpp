@@ -56,6 +56,8 @@ inline constexpr std::tuple stats_fields{
     Field{"status", &Stats::status},
     Field{"offender", &Stats::offender},
     Field{"offender_index", &Stats::offender_index},
+    Field{"raised_vertices", &Stats::raised_vertices},
+    Field{"greatest_mass_ratio", &Stats::greatest_mass_ratio},
 };
 
 /// An enumeration's values and the strings that stand for them in Python.

@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include "devices.hpp"
 #include "opencl_error.hpp"
+#include "process.hpp"
 
 namespace apsl::python {
 namespace {
@@ -30,7 +31,7 @@ Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle devic
     cl_int code = CL_SUCCESS;
     context_ = host::ContextHandle(clCreateContext(nullptr, 1, &id, nullptr, nullptr, &code));
     host::check(code, "apsl: creating an OpenCL context");
-    queue_ = QueueHandle(clCreateCommandQueue(context_.get(), id, 0, &code));
+    queue_ = host::QueueHandle(clCreateCommandQueue(context_.get(), id, 0, &code));
     host::check(code, "apsl: creating a command queue");
     limiter_.emplace(context_.get(), id, topology, options);
     positions_ = make_buffer(3 * vertex_count_);
@@ -57,6 +58,7 @@ void Limiter::upload(const host::BufferHandle& buffer, const float* values, std:
 
 py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle inverse_masses, py::handle rest_areas,
                          const py::kwargs& arguments) {
+    enter_opencl();
     const Array<float> given_positions = vectors<float>(positions, "positions", vertex_count_);
     const Array<float> given_velocities = vectors<float>(velocities, "velocities", vertex_count_);
     const Array<float> given_masses = numbers<float>(inverse_masses, "inverse_masses", vertex_count_);

@@ -27,8 +27,6 @@ public:
     py::dict options() const { return to_dict(limiter_->options(), option_fields); }
 
 private:
-    using QueueHandle = host::Handle<cl_command_queue, clReleaseCommandQueue>;
-
     host::BufferHandle make_buffer(std::size_t floats);
     void upload(const host::BufferHandle& buffer, const float* values, std::size_t floats);
 
@@ -36,7 +34,7 @@ private:
     std::size_t vertex_count_;
     std::size_t triangle_count_ = 0;
     host::ContextHandle context_;
-    QueueHandle queue_;
+    host::QueueHandle queue_;
     std::optional<StrainLimiter> limiter_;
     host::BufferHandle positions_;
     host::BufferHandle velocities_;

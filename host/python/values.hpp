@@ -30,10 +30,18 @@ py::object to_python(const Value& value) {
     }
 }
 
+/// Of a numpy scalar, or an array without dimensions, the number that it holds, of a type of Python's.
+inline py::object without_numpy(py::handle object) {
+    const bool scalar = py::hasattr(object, "item") && py::hasattr(object, "ndim") &&
+                        py::object(object.attr("ndim")).equal(py::int_(0));
+    return scalar ? py::object(object.attr("item")()) : py::reinterpret_borrow<py::object>(object);
+}
+
 /// Throws Error(invalid_argument) that names the argument for a value of another type or out of the type's range.
 template <class Value>
-Value from_python(py::handle object, const std::string& argument) {
-    const std::string got = py::repr(object);
+Value from_python(py::handle given, const std::string& argument) {
+    const std::string got = py::repr(given);
+    const py::object object = without_numpy(given);
     if constexpr (std::is_enum_v<Value>) {
         std::string expected;
         for (const auto& [value, name] : names_of<Value>) {
@@ -47,8 +55,11 @@ Value from_python(py::handle object, const std::string& argument) {
                                          : std::is_floating_point_v<Value> ? "a number"
                                          : std::is_unsigned_v<Value>       ? "an integer from 0 to 4294967295"
                                                                            : "an integer of 32 bits";
-        // pybind11 takes a float where an int stands to be a mistake, and a bool to be a number.
-        if (py::isinstance<py::bool_>(object) != is_bool) refuse(argument, got, expected);
+        // pybind11 takes a bool to be a number, and an array of one number; it cuts off what follows a Decimal's point.
+        const bool is_array = py::hasattr(object, "__len__");
+        const bool is_whole = PyIndex_Check(object.ptr()) != 0;
+        if (py::isinstance<py::bool_>(object) != is_bool || is_array || (std::is_integral_v<Value> && !is_whole))
+            refuse(argument, got, expected);
         try {
             return object.cast<Value>();
         } catch (const py::cast_error&) {

@@ -146,13 +146,15 @@ typedef struct apsl_limiter_stats {
     int32_t sub_steps;             /**< solves done */
     int32_t cg_iterations;         /**< over all of them */
     float residual;                /**< greatest relative residual at the end of a solve */
-    float max_area_change;         /**< max |A - A0| / A0 of what is left behind */
+    float max_area_change;         /**< max |A - A0| / A0 of the state that stands */
     float rms_area_change;         /**< weighted with A0 */
     float initial_max_area_change; /**< the greatest at x + dt v */
     float initial_rms_area_change; /**< and the weighted RMS there */
     int32_t status;                /**< apsl_limiter_status */
-    int32_t offender;              /**< apsl_limiter_offender; none unless status is diverged */
+    int32_t offender;              /**< apsl_limiter_offender; none unless status is diverged or worsened */
     uint32_t offender_index;       /**< the first one, within its cloth */
+    uint32_t raised_vertices;      /**< vertices that weighed more than given in the last sub-step */
+    float greatest_mass_ratio;     /**< their greatest mass over the one given; 1 where none was raised */
 } apsl_limiter_stats;
 
 /** What went wrong in this thread's last failed call: one line, empty before the first. Valid until the next one. */

@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: MIT
+/* SPDX-License-Identifier: MIT */
 #pragma once
 
-/// Marks what the shared library shows; everything else is hidden.
+/** Marks what the shared library shows; everything else is hidden. */
 #if defined(_WIN32)
 #define APSL_API
 #else

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <apsl/cxx20.hpp>
 #include <apsl/error.hpp>
 #include <apsl/export.hpp>
 #include <apsl/parameters.hpp>
@@ -106,12 +107,13 @@ struct KernelTime {
 class APSL_API StrainLimiter {
 public:
     /// Compiles the kernels and uploads the adjacency of one or more cloths; this and rebuild() alone wait.
-    /// Throws Error: invalid_argument (no cloths, options out of range, too little scratch), unsupported (the device
-    /// lacks what the options ask for), kernel_build, opencl.
+    /// Throws Error: invalid_argument (a device that is not in the context, no cloths, options out of range, scratch
+    /// that is too small or not as said below), unsupported (the device lacks what the options ask for), kernel_build,
+    /// opencl.
     /// `program_binary`: what program_binary() gave, tried in place of compiling; see program_binary_use().
-    /// `scratch`: a place in a buffer of the caller's, itself no sub-buffer, with required_scratch_bytes() from its
-    /// offset on, which is then all the device memory used; nobody else may write there while the limiter lives. Null:
-    /// the limiter allocates its own.
+    /// `scratch`: a place in a buffer of the caller's, itself no sub-buffer, CL_MEM_READ_WRITE without a CL_MEM_HOST_
+    /// flag, with required_scratch_bytes() from its offset on, which is then all the device memory used; nobody else
+    /// may write there while the limiter lives. Null: the limiter allocates its own.
     StrainLimiter(cl_context context, cl_device_id device, std::span<const std::shared_ptr<const Topology>> cloths,
                   const Options& options = {}, std::span<const std::byte> program_binary = {},
                   const BufferView& scratch = {});
@@ -154,7 +156,9 @@ public:
 
     /// Queues one filter call. `parameters` holds one entry for every cloth, or a single one for all.
     /// The queue may be in-order or out-of-order. The returned event completes with the call; the caller releases it.
-    /// Throws Error(invalid_argument) before anything is queued, Error(opencl) where a call fails.
+    /// Throws Error(invalid_argument) before anything is queued: parameters out of range; a queue of another context or
+    /// device; events of another context; buffers of another context, too small, or that kernels may not read or write
+    /// as Buffers says. Throws Error(opencl) where a call fails.
     [[nodiscard]] cl_event enqueue(cl_command_queue queue, const Buffers& buffers,
                                    std::span<const Parameters> parameters, std::span<const cl_event> wait_list = {});
     /// The same with one set of parameters for all cloths.

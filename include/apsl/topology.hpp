@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <apsl/cxx20.hpp>
 #include <apsl/export.hpp>
 #include <apsl/parameters.hpp>
 

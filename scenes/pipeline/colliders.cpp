@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace apsl::scenes {
 
@@ -20,6 +21,10 @@ using Vector = Eigen::Vector3d;
 constexpr int max_rounds = 128;
 // m. From the second round on, less than this counts as on the surface: a push leaves rounding errors behind.
 constexpr double slack = 1e-10;
+// m. What begins a step deeper inside than this began the simulation there.
+constexpr double start_depth = 1e-4;
+// s. In this time all but 1/e of the depth is gone.
+constexpr double time_to_leave = 0.2;
 
 struct Surface {
     double distance;  ///< m, negative inside
@@ -63,14 +68,33 @@ Surface surface(const Capsule& capsule, const Vector& place, const Vector& start
             .normal = length > 0.0 ? Vector(offset / length) : any_way_out(axis.stableNormalized(), start - closest)};
 }
 
-// Pushes the predicted place of one vertex out of one collider; whether it had to.
+Surface surface(const Collider& collider, const Vector& place, const Vector& start) {
+    return std::visit([&](const auto& shape) { return surface(shape, place, start); }, collider);
+}
+
+const Contact& contact_of(const Collider& collider) {
+    return std::visit([](const auto& shape) -> const Contact& { return shape.contact; }, collider);
+}
+
+// Moves a vertex that begins the step inside a part of its way out. Returns how deep it may still be, m.
+double lead_out_of(const Collider& collider, Eigen::Map<Vector> position, double time_step) {
+    const auto [distance, normal] = surface(collider, position, position);
+    const double depth = contact_of(collider).thickness - distance;
+    if (!(depth > start_depth)) {
+        return 0.0;
+    }
+    const double way = std::min(1.0, time_step / time_to_leave) * depth;
+    position += way * normal;
+    return depth - way;
+}
+
+// Pushes the predicted place of one vertex out of one collider, up to the depth it may have; whether it had to.
 bool push_out(const Collider& collider, const Vector& position, Eigen::Map<Vector> velocity, double time_step,
-              double ignored_depth) {
+              double allowed_depth, double ignored_depth) {
     const Vector place = position + time_step * velocity;
-    const auto [distance, normal] =
-        std::visit([&](const auto& shape) { return surface(shape, place, position); }, collider);
-    const Contact& contact = std::visit([](const auto& shape) -> const Contact& { return shape.contact; }, collider);
-    const double depth = contact.thickness - distance;
+    const auto [distance, normal] = surface(collider, place, position);
+    const Contact& contact = contact_of(collider);
+    const double depth = contact.thickness - allowed_depth - distance;
     if (!(depth > ignored_depth)) {
         return false;
     }
@@ -141,23 +165,44 @@ void validate(const Collider& collider) {
         collider);
 }
 
-std::size_t resolve_collisions(ClothState& cloth, std::span<const Collider> colliders, double time_step) {
+StartInside start_inside(const ClothState& cloth, const Collider& collider) {
+    StartInside inside;
+    const std::span<const double> positions = cloth.positions;
+    for (std::size_t vertex = 0; vertex < cloth.inverse_masses.size(); ++vertex) {
+        if (cloth.inverse_masses[vertex] == 0.0) {
+            continue;
+        }
+        const Vector place = vector_at(positions, vertex);
+        const double depth = contact_of(collider).thickness - surface(collider, place, place).distance;
+        if (depth > start_depth) {
+            ++inside.vertices;
+            inside.depth = std::max(inside.depth, depth);
+        }
+    }
+    return inside;
+}
+
+std::size_t resolve_collisions(ClothState& cloth, std::span<const Collider> colliders, double time_step,
+                               bool lead_out) {
     if (!(time_step > 0.0)) {
         throw Error(ErrorCode::invalid_argument,
                     "collisions: time_step must be positive (s), got " + std::to_string(time_step));
     }
-    const std::span<const double> positions = cloth.positions;
+    std::vector<double> allowed_depths(colliders.size(), 0.0);
     std::size_t touched_vertices = 0;
     for (std::size_t vertex = 0; vertex < cloth.inverse_masses.size(); ++vertex) {
         if (cloth.inverse_masses[vertex] == 0.0) {
             continue;
         }
-        const Vector position = vector_at(positions, vertex);
+        const Eigen::Map<Vector> position = vector_at(std::span(cloth.positions), vertex);
+        for (std::size_t k = 0; lead_out && k < colliders.size(); ++k) {
+            allowed_depths[k] = lead_out_of(colliders[k], position, time_step);
+        }
         for (int round = 0; round < max_rounds; ++round) {
             bool touched = false;
-            for (const Collider& collider : colliders) {
-                touched |= push_out(collider, position, vector_at(std::span(cloth.velocities), vertex), time_step,
-                                    round == 0 ? 0.0 : slack);
+            for (std::size_t k = 0; k < colliders.size(); ++k) {
+                touched |= push_out(colliders[k], position, vector_at(std::span(cloth.velocities), vertex), time_step,
+                                    allowed_depths[k], round == 0 ? 0.0 : slack);
             }
             if (!touched) {
                 break;

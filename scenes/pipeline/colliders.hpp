@@ -42,12 +42,22 @@ using Collider = std::variant<Sphere, Plane, Capsule>;
 /// Throws Error(invalid_argument) naming the field that is out of range or not finite.
 void validate(const Collider& collider);
 
+/// Free vertices inside of a collider, its thickness included, by more than a step leaves behind.
+struct StartInside {
+    std::size_t vertices = 0;
+    double depth = 0.0;  ///< m, the greatest
+};
+
+StartInside start_inside(const ClothState& cloth, const Collider& collider);
+
 /// Collision response on velocities, vertex by vertex, after the filter: where x + Δt v lies inside a collider, v is
-/// changed so that it lies on the surface (what starts inside leaves within one step, and keeps that speed), and
-/// friction takes up to μ times that change off the tangential velocity. Only the end of the step is looked at: what
-/// crosses a collider whole within one step is not seen. Pinned vertices are left alone. Colliders stand still and are
-/// not checked here (see validate). Returns the number of vertices touched. Throws Error(invalid_argument) unless
-/// time_step > 0.
-std::size_t resolve_collisions(ClothState& cloth, std::span<const Collider> colliders, double time_step);
+/// changed so that it lies on the surface, and friction takes up to μ times that change off the tangential velocity.
+/// Only the end of the step is looked at: what crosses a collider whole within one step is not seen. Pinned vertices
+/// are left alone. Colliders stand still and are not checked here (see validate).
+/// `lead_out`: for cloth that starts inside, which would leave at depth / Δt and keep that speed. Then its position is
+/// moved towards the surface by a part of its depth, and its velocity changed only so that it comes no deeper again.
+/// Returns the number of vertices whose velocity was changed. Throws Error(invalid_argument) unless time_step > 0.
+std::size_t resolve_collisions(ClothState& cloth, std::span<const Collider> colliders, double time_step,
+                               bool lead_out = false);
 
 }  // namespace apsl::scenes

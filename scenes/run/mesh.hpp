@@ -4,6 +4,8 @@
 #include <apsl/topology.hpp>
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace apsl::scenes {
@@ -12,6 +14,9 @@ namespace apsl::scenes {
 struct Mesh {
     std::vector<double> positions;    ///< m, [3V]
     std::vector<Triangle> triangles;  ///< [T], counter-clockwise
+    std::vector<std::uint32_t>
+        welded_to;                      ///< the vertex that each vertex of a file became; empty where none was welded
+    std::vector<std::string> warnings;  ///< of the file, one line each, with what to do
 
     std::size_t vertex_count() const { return positions.size() / 3; }
 };

@@ -2,6 +2,7 @@
 #include "run/override_scene.hpp"
 
 #include "run/input_error.hpp"
+#include "run/parse_json.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -27,6 +28,16 @@ std::vector<std::string> split_path(std::string path) {
     return keys;
 }
 
+// Anything else would stop whoever writes the scene down, late.
+bool is_utf8(const std::string& text) {
+    try {
+        nlohmann::json(text).dump();
+        return true;
+    } catch (const nlohmann::json::type_error&) {
+        return false;
+    }
+}
+
 std::optional<std::size_t> as_index(const std::string& key) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
@@ -45,7 +56,9 @@ void replace_other_kinds(Json& document, const std::vector<std::string>& path) {
     for (const std::string& kind : kinds) {
         if (kind != path[1]) document[path[0]].erase(kind);
     }
-    if (path[0] == "mesh" && path[1] != "file") document[path[0]].erase("height");
+    if (path[0] == "mesh" && path[1] != "file") {
+        for (const char* key : {"height", "weld"}) document[path[0]].erase(key);
+    }
 }
 
 }  // namespace
@@ -57,8 +70,13 @@ void override_scene(Json& document, const std::string& assignment) {
     if (equals == std::string::npos || std::find(path.begin(), path.end(), "") != path.end()) {
         throw InputError("--set " + assignment + ": expected path=value, such as strain_limiting.regularization=1.05");
     }
-    Json value = Json::parse(assignment.substr(equals + 1), nullptr, false);
-    if (value.is_discarded()) value = assignment.substr(equals + 1);
+    if (path.size() > kMaxSceneDepth) {
+        throw InputError("--set " + path[0] + "...: a path of " + std::to_string(path.size()) +
+                         " keys, expected at most " + std::to_string(kMaxSceneDepth));
+    }
+    if (!is_utf8(assignment)) throw InputError("--set " + assignment + ": expected text in UTF-8");
+    const std::string text = assignment.substr(equals + 1);
+    Json value = Json::accept(text) ? Json(parse_json(text, "--set " + assignment)) : Json(text);
 
     replace_other_kinds(document, path);
     Json* place = &document;

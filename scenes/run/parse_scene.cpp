@@ -3,13 +3,13 @@
 
 #include "run/input_error.hpp"
 #include "run/override_scene.hpp"
+#include "run/parse_json.hpp"
 #include "run/parse_vertices.hpp"
+#include "run/read_file.hpp"
 #include "run/scene_object.hpp"
 
 #include <apsl/error.hpp>
 
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 namespace apsl::scenes {
@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kMaxKeptPressures = 1000;
-constexpr int kMaxDepth = 64;
 
 std::array<std::uint32_t, 2> counts(SceneObject& object, const std::string& key,
                                     const std::array<std::uint32_t, 2>& fallback,
@@ -80,12 +79,17 @@ MeshSource parse_mesh(SceneObject object, const std::filesystem::path& folder) {
     MeshFile source;
     const SceneValue file = object.find("file");
     const SceneValue height = object.find("height");
+    const SceneValue weld = object.find("weld");
     const std::string kind = object.only_one_of({"grid", "tube", "file"});
     if (height.json != nullptr && kind != "file") height.fail("only a mesh from a file is scaled to a height");
+    if (weld.json != nullptr && kind != "file") weld.fail("only a mesh from a file is welded");
     if (kind == "grid") return parse_grid(SceneObject(object.find("grid")));
     if (kind == "tube") return parse_tube(SceneObject(object.find("tube")));
-    source.file = folder / file.text();
+    const std::string name = file.text();
+    if (name.empty() || name.find('\0') != std::string::npos) file.expected("the name of a file");
+    source.file = folder / name;
     if (height.json != nullptr) source.height = height.number(Range::above(0.0));
+    if (weld.json != nullptr) source.weld = weld.number(Range::at_least(0.0));
     return source;
 }
 
@@ -151,6 +155,7 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     }
     const SceneValue regularization = object.find("regularization");
     if (regularization.json != nullptr && regularization.json->is_array()) {
+        if (regularization.json->empty()) regularization.expected("a number, or one for each triangle");
         for (const SceneValue& entry : regularization.entries()) {
             settings.regularization.push_back(static_cast<float>(entry.number(Range::at_least(1.0))));
         }
@@ -261,31 +266,9 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     return scene;
 }
 
-nlohmann::ordered_json parse_scene_text(std::string_view text, const std::string& file) {
-    // What comes after is recursive: text nested deep enough would use up the stack.
-    const auto check_depth = [&](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
-        if (depth > kMaxDepth)
-            throw InputError(file + ": nested more than " + std::to_string(kMaxDepth) + " deep, expected a scene");
-        return true;
-    };
-    try {
-        return nlohmann::ordered_json::parse(text, check_depth);
-    } catch (const nlohmann::json::exception& error) {
-        std::string reason = error.what();  // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
-        if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
-        for (char& letter : reason) {
-            if (letter == '\n' || letter == '\r') letter = ' ';
-        }
-        throw InputError(file + ": not valid JSON: " + reason);
-    }
-}
-
 nlohmann::ordered_json read_scene_document(const std::filesystem::path& file, std::span<const std::string> overrides) {
-    if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such scene file");
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    nlohmann::ordered_json document = parse_scene_text(text, file.string());
+    const std::string text = read_file(file, "scene");
+    nlohmann::ordered_json document = parse_json(text, file.string());
     for (const std::string& assignment : overrides) override_scene(document, assignment);
     return document;
 }

@@ -18,10 +18,6 @@ namespace apsl::scenes {
 /// type or out of range.
 Scene parse_scene(const nlohmann::json& document, const std::string& file);
 
-/// The values of a JSON text in their order, not looked at further. Throws InputError naming the file and the line for
-/// what is no JSON, or objects and arrays nested deeper than any scene's (64).
-nlohmann::ordered_json parse_scene_text(std::string_view text, const std::string& file);
-
 /// A scene file's values in the order of the file, changed by `overrides` (see override_scene.hpp), not looked at
 /// further. Throws InputError for a file that is missing or no JSON (naming the line), or overrides that do not fit.
 nlohmann::ordered_json read_scene_document(const std::filesystem::path& file,

@@ -33,6 +33,8 @@ PinMotion parse_motion(SceneObject object) {
 VertexSelection parse_selection(SceneObject& object) {
     const std::string kind = object.only_one_of({"vertices", "corners", "box"});
     const SceneValue value = object.find(kind);
+    // None would leave the cloth free where its user pinned it.
+    if (value.json->is_array() && value.json->empty()) value.expected("at least one");
     if (kind == "vertices") {
         SelectedVertices selection;
         for (const SceneValue& vertex : value.entries()) {

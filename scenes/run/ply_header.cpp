@@ -18,6 +18,7 @@ constexpr NamedType kTypes[] = {
     {"char", "int8", {1, false, true}},    {"uchar", "uint8", {1, false, false}},
     {"short", "int16", {2, false, true}},  {"ushort", "uint16", {2, false, false}},
     {"int", "int32", {4, false, true}},    {"uint", "uint32", {4, false, false}},
+    {"long", "int64", {8, false, true}},   {"ulong", "uint64", {8, false, false}},
     {"float", "float32", {4, true, true}}, {"double", "float64", {8, true, true}},
 };
 
@@ -59,14 +60,21 @@ void refuse_ply(const std::string& file, const std::string& what) {
 PlyHeader take_ply_header(std::string_view& contents, const std::string& file) {
     PlyHeader header;
     std::optional<PlyFormat> format;
-    if (take_line(contents) != "ply") refuse_ply(file, "expected ply in the first line");
+    const std::string_view whole = contents;
+    std::string_view first = take_line(contents);
+    // Where lines end with \r alone, a \n behind the last one belongs to the numbers.
+    const bool ends_with_return =
+        whole.substr(first.size(), 2).starts_with('\r') && !whole.substr(first.size(), 2).ends_with('\n');
+    if (take_word(first) != "ply" || !take_word(first).empty()) refuse_ply(file, "expected ply in the first line");
     while (!contents.empty()) {
+        const std::string_view before = contents;
         const std::string_view line = take_line(contents);
         std::string_view rest = line;
         const std::string_view key = take_word(rest);
         if (key == "end_header") {
             if (!format) refuse_ply(file, "the header names no format");
             header.format = *format;
+            if (ends_with_return && !contents.empty()) contents = before.substr(line.size() + 1);
             return header;
         }
         if (key == "format") {

@@ -12,7 +12,7 @@ namespace apsl::scenes {
 
 enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
 
-/// A number's type by its size in bytes: 1 to 4 where it is whole, 4 or 8 where not.
+/// A number's type by its size in bytes: 1, 2, 4 or 8 where it is whole, 4 or 8 where not.
 struct PlyType {
     std::size_t size;
     bool is_float, is_signed;

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "run/read_mesh.hpp"
 
+#include "run/byte_order_mark.hpp"
+#include "run/cut_polygons.hpp"
 #include "run/input_error.hpp"
+#include "run/read_file.hpp"
 #include "run/read_obj.hpp"
 #include "run/read_ply.hpp"
+#include "run/weld.hpp"
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <string>
+#include <utility>
 
 namespace apsl::scenes {
 namespace {
 
-void scale_to_height(Mesh& mesh, double height, const std::string& file) {
+void scale_to_height(PolygonMesh& mesh, double height) {
     double lowest = mesh.positions[1];
     double highest = lowest;
     for (std::size_t k = 1; k < mesh.positions.size(); k += 3) {
@@ -22,7 +25,7 @@ void scale_to_height(Mesh& mesh, double height, const std::string& file) {
         highest = std::max(highest, mesh.positions[k]);
     }
     if (!(highest > lowest)) {
-        throw InputError(file + ": all vertices have the same y, mesh.height cannot scale that; leave it out");
+        throw InputError(mesh.file + ": all vertices have the same y, mesh.height cannot scale that; leave it out");
     }
     const double scale = height / (highest - lowest);
     for (double& coordinate : mesh.positions) coordinate *= scale;
@@ -30,21 +33,24 @@ void scale_to_height(Mesh& mesh, double height, const std::string& file) {
 
 }  // namespace
 
-Mesh read_mesh(const std::filesystem::path& file, std::optional<double> height) {
-    if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such mesh file");
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(file.string() + ": cannot be opened for reading");
-
-    std::string extension = file.extension().string();
+Mesh read_mesh(const MeshFile& source) {
+    const std::string file = source.file.string();
+    const std::string bytes = read_file(source.file, "mesh");
+    std::string extension = source.file.extension().string();
     for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     if (extension != ".obj" && extension != ".ply") {
-        throw InputError(file.string() + ": unknown kind of mesh file, expected .obj or .ply");
+        throw InputError(file + ": unknown kind of mesh file, expected .obj or .ply");
     }
-    const std::string contents{std::istreambuf_iterator<char>(stream), {}};
-    Mesh mesh = extension == ".obj" ? read_obj(contents, file.string()) : read_ply(contents, file.string());
-    if (mesh.positions.empty()) throw InputError(file.string() + ": has no vertices");
-    if (mesh.triangles.empty()) throw InputError(file.string() + ": has no faces");
-    if (height) scale_to_height(mesh, *height, file.string());
+    const std::string_view contents = without_byte_order_mark(bytes, file);
+    PolygonMesh polygons = extension == ".obj" ? read_obj(contents, file) : read_ply(contents, file);
+    if (polygons.positions.empty()) throw InputError(file + ": has no vertices");
+    if (polygons.faces.empty()) throw InputError(file + ": has no faces");
+    if (source.height) scale_to_height(polygons, *source.height);
+    std::vector<std::uint32_t> welded_to;
+    if (source.weld > 0.0) welded_to = weld(polygons, source.weld);
+    Mesh mesh = cut_polygons(std::move(polygons));
+    mesh.welded_to = std::move(welded_to);
+    if (mesh.triangles.empty()) throw InputError(file + ": has no faces that enclose anything");
     return mesh;
 }
 

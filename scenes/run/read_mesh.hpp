@@ -8,11 +8,17 @@
 
 namespace apsl::scenes {
 
-/// Reads an .obj or .ply file. Vertices keep their order and number; polygons are cut into a fan from their first
-/// vertex. `height`: m, > 0; the mesh is scaled about the origin so that its extent along y is this.
-/// Throws InputError naming the file and the line, vertex or face (counted from 0, as pins count vertices): no such
-/// file, not readable, no vertices or faces, a coordinate that is not a finite number, a face with fewer than three
-/// vertices, with one of them twice or with an index out of range, no extent along y to scale.
-Mesh read_mesh(const std::filesystem::path& file, std::optional<double> height);
+struct MeshFile {
+    std::filesystem::path file;    ///< .obj or .ply; relative to the scene file
+    std::optional<double> height;  ///< m, > 0: scaled about the origin to this extent along y; as it is without
+    double weld = 0.0;             ///< m, ≥ 0: vertices of the scaled mesh within this distance become one; 0: none do
+};
+
+/// Reads an .obj or .ply file. Vertices keep their order, and their numbers unless some are welded; faces become
+/// triangles as cut_polygons says.
+/// Throws InputError naming the file and the line (OBJ) or the vertex or face as PLY counts them, from 0: no such file,
+/// not readable, no vertices or faces, a coordinate that is not a finite number, a face with fewer than three vertices,
+/// with an index out of range or without an area, no extent along y to scale.
+Mesh read_mesh(const MeshFile& source);
 
 }  // namespace apsl::scenes

@@ -2,56 +2,110 @@
 #include "run/read_obj.hpp"
 
 #include "run/input_error.hpp"
-#include "run/polygons.hpp"
 #include "run/words.hpp"
 
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 namespace apsl::scenes {
 namespace {
 
-void add_vertex(Mesh& mesh, std::string_view coordinates, const std::string& place, std::string_view line) {
+/// A v or f line, with those that a backslash joins to it.
+struct Statement {
+    std::string_view key;   // "v", "f", or another that does not matter here
+    std::string_view rest;  // behind the key, without a comment
+    std::string_view line;  // its first line, for messages
+    std::size_t number;     // of that line, from 1
+};
+
+class Statements {
+public:
+    explicit Statements(std::string_view contents) : contents_(contents) {}
+
+    bool at_end() const { return contents_.empty(); }
+
+    Statement take() {
+        Statement statement{.key = {}, .rest = {}, .line = take_line(contents_), .number = ++lines_};
+        std::string_view part = without_comment(statement.line);
+        statement.rest = part;
+        statement.key = take_word(statement.rest);
+        if (!goes_on(part)) return statement;
+        if (statement.key == "v\\" || statement.key == "f\\") {
+            statement.key.remove_suffix(1);
+            statement.rest = part.substr(static_cast<std::size_t>(statement.key.end() - part.begin()));
+        }
+        // Elsewhere, as in a name or a comment, a backslash is a letter like any other.
+        if (statement.key != "v" && statement.key != "f") return statement;
+        joined_.clear();
+        for (part = statement.rest; goes_on(part); part = without_comment(take_line(contents_)), ++lines_) {
+            joined_.append(part.substr(0, part.find_last_of('\\'))).append(" ");
+        }
+        statement.rest = joined_.append(part);
+        return statement;
+    }
+
+private:
+    static std::string_view without_comment(std::string_view line) { return line.substr(0, line.find('#')); }
+
+    static bool goes_on(std::string_view part) {
+        const std::size_t last = part.find_last_not_of(" \t");
+        return last != std::string_view::npos && part[last] == '\\';
+    }
+
+    std::string_view contents_;
+    std::string joined_;
+    std::size_t lines_ = 0;
+};
+
+[[noreturn]] void refuse(const std::string& file, const Statement& statement, const std::string& what) {
+    throw InputError(file + ":" + std::to_string(statement.number) + ": " + what);
+}
+
+void add_vertex(PolygonMesh& mesh, const Statement& statement) {
+    std::string_view coordinates = statement.rest;
     for (int axis = 0; axis < 3; ++axis) {
         double coordinate = 0.0;
         if (!parse_number(take_word(coordinates), coordinate) || !std::isfinite(coordinate)) {
-            throw InputError(place + "expected three finite coordinates after v, got " + quoted(line));
+            refuse(mesh.file, statement, "expected three finite coordinates after v, got " + quoted(statement.line));
         }
         mesh.positions.push_back(coordinate);
     }
 }
 
-// v, v/vt, v//vn or v/vt/vn: only v is looked at. Counted from 1, or back from the last vertex before the line.
-std::int64_t vertex_index(std::string_view corner, const Mesh& mesh, const std::string& place, std::string_view line) {
-    std::int64_t number = 0;
-    if (!parse_number(corner.substr(0, corner.find('/')), number) || number == 0) {
-        throw InputError(place + "expected vertex numbers from 1, or from -1 back, after f, got " + quoted(line));
+// Corners are v, v/vt, v//vn or v/vt/vn: only v is looked at. Counted from 1, or back from the last vertex before the
+// line.
+void add_face(PolygonMesh& mesh, const Statement& statement) {
+    std::string_view corners = statement.rest;
+    for (std::string_view corner = take_word(corners); !corner.empty(); corner = take_word(corners)) {
+        std::int64_t number = 0;
+        if (!parse_number(corner.substr(0, corner.find('/')), number) || number == 0) {
+            refuse(mesh.file, statement,
+                   "expected vertex numbers from 1, or from -1 back, after f, got " + quoted(statement.line));
+        }
+        const auto before = static_cast<std::int64_t>(mesh.vertex_count());
+        if (number < -before) {
+            refuse(mesh.file, statement,
+                   "vertex " + std::to_string(number) + " is out of range, " + std::to_string(before) +
+                       " vertices come before it");
+        }
+        mesh.add_corner(number, number > 0 ? number - 1 : before + number);
     }
-    return number > 0 ? number - 1 : static_cast<std::int64_t>(mesh.vertex_count()) + number;
+    mesh.end_face(statement.number);
 }
 
 }  // namespace
 
-Mesh read_obj(std::string_view contents, const std::string& file) {
-    Mesh mesh;
-    std::vector<std::vector<std::int64_t>> polygons;  // a face may come before its vertices
-    for (std::size_t number = 1; !contents.empty(); ++number) {
-        const std::string_view line = take_line(contents);
-        std::string_view rest = line;
-        const std::string_view key = take_word(rest);
-        if (key != "v" && key != "f") continue;
-        const std::string place = file + ":" + std::to_string(number) + ": ";
-        if (key == "v") {
-            add_vertex(mesh, rest, place, line);
-            continue;
-        }
-        std::vector<std::int64_t>& polygon = polygons.emplace_back();
-        for (std::string_view corner = take_word(rest); !corner.empty() && corner[0] != '#'; corner = take_word(rest)) {
-            polygon.push_back(vertex_index(corner, mesh, place, line));
-        }
+PolygonMesh read_obj(std::string_view contents, const std::string& file) {
+    PolygonMesh mesh;
+    mesh.file = file;
+    mesh.has_lines = true;
+    Statements statements(contents);
+    while (!statements.at_end()) {
+        const Statement statement = statements.take();
+        if (statement.key == "v") add_vertex(mesh, statement);
+        if (statement.key == "f") add_face(mesh, statement);
     }
-    for (std::size_t face = 0; face < polygons.size(); ++face) add_polygon(mesh, polygons[face], file, face);
+    check_faces(mesh);  // at the end, for a face may come before its vertices
     return mesh;
 }
 

@@ -18,36 +18,53 @@ double median(const std::vector<FrameReport>& frames, double FrameReport::* seco
     return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
+// What the filter did beyond correcting, of a frame or a run.
+template <class Report>
+void add_filter_notes(const Report& report, nlohmann::ordered_json& json) {
+    json["raised_vertices"] = report.raised_vertices;
+    json["greatest_mass_ratio"] = report.greatest_mass_ratio;
+    if (!report.worsened) return;
+    json["worsened"] = {{"frame", report.worsened->frame},
+                        {"step", report.worsened->step},
+                        {"triangle", report.worsened->triangle},
+                        {"area_change", report.worsened->area_change},
+                        {"initial_area_change", report.worsened->initial_area_change}};
+}
+
 nlohmann::ordered_json to_json(const FrameReport& frame) {
-    return {{"frame", frame.frame},
-            {"max_area_change", frame.max_area_change},
-            {"rms_area_change", frame.rms_area_change},
-            {"max_edge_stretch", frame.max_edge_stretch},
-            {"min_edge_stretch", frame.min_edge_stretch},
-            {"max_speed", frame.max_speed},
-            {"energy", to_json(frame.energy)},
-            {"sub_steps", frame.sub_steps},
-            {"cg_iterations", frame.cg_iterations},
-            {"integrator_seconds", frame.integrator_seconds},
-            {"filter_seconds", frame.filter_seconds},
-            {"collision_seconds", frame.collision_seconds},
-            {"step_seconds", frame.step_seconds},
-            {"status", status_name(frame.status)}};
+    nlohmann::ordered_json json{{"frame", frame.frame},
+                                {"max_area_change", frame.max_area_change},
+                                {"rms_area_change", frame.rms_area_change},
+                                {"max_edge_stretch", frame.max_edge_stretch},
+                                {"min_edge_stretch", frame.min_edge_stretch},
+                                {"max_speed", frame.max_speed},
+                                {"energy", to_json(frame.energy)},
+                                {"sub_steps", frame.sub_steps},
+                                {"cg_iterations", frame.cg_iterations},
+                                {"integrator_seconds", frame.integrator_seconds},
+                                {"filter_seconds", frame.filter_seconds},
+                                {"collision_seconds", frame.collision_seconds},
+                                {"step_seconds", frame.step_seconds},
+                                {"status", status_name(frame.status)}};
+    add_filter_notes(frame, json);
+    return json;
 }
 
 nlohmann::ordered_json to_json(const RunSummary& summary) {
-    return {{"max_area_change", summary.max_area_change},
-            {"mean_max_area_change", summary.mean_max_area_change},
-            {"rms_area_change", summary.rms_area_change},
-            {"max_edge_stretch", summary.max_edge_stretch},
-            {"min_edge_stretch", summary.min_edge_stretch},
-            {"solves", summary.solves},
-            {"cg_iterations_per_solve", summary.cg_iterations_per_solve},
-            {"integrator_seconds_per_frame", summary.integrator_seconds_per_frame},
-            {"filter_seconds_per_frame", summary.filter_seconds_per_frame},
-            {"collision_seconds_per_frame", summary.collision_seconds_per_frame},
-            {"step_seconds_per_frame", summary.step_seconds_per_frame},
-            {"status", status_name(summary.status)}};
+    nlohmann::ordered_json json{{"max_area_change", summary.max_area_change},
+                                {"mean_max_area_change", summary.mean_max_area_change},
+                                {"rms_area_change", summary.rms_area_change},
+                                {"max_edge_stretch", summary.max_edge_stretch},
+                                {"min_edge_stretch", summary.min_edge_stretch},
+                                {"solves", summary.solves},
+                                {"cg_iterations_per_solve", summary.cg_iterations_per_solve},
+                                {"integrator_seconds_per_frame", summary.integrator_seconds_per_frame},
+                                {"filter_seconds_per_frame", summary.filter_seconds_per_frame},
+                                {"collision_seconds_per_frame", summary.collision_seconds_per_frame},
+                                {"step_seconds_per_frame", summary.step_seconds_per_frame},
+                                {"status", status_name(summary.status)}};
+    add_filter_notes(summary, json);
+    return json;
 }
 
 nlohmann::ordered_json to_json(const OverStretchReport& report) {
@@ -88,6 +105,10 @@ RunSummary summarize(const std::vector<FrameReport>& frames) {
         summary.solves += frame.sub_steps;
         cg_iterations += frame.cg_iterations;
         summary.status = std::max(summary.status, frame.status);
+        summary.raised_vertices = std::max(summary.raised_vertices, frame.raised_vertices);
+        summary.greatest_mass_ratio = std::max(summary.greatest_mass_ratio, frame.greatest_mass_ratio);
+        if (frame.worsened && (!summary.worsened || frame.worsened->area_change > summary.worsened->area_change))
+            summary.worsened = frame.worsened;
     }
     summary.rms_area_change = std::sqrt(squares / static_cast<double>(frames.size()));
     if (summary.solves > 0) {
@@ -124,14 +145,20 @@ nlohmann::ordered_json to_json(const Energy& energy) {
 }
 
 nlohmann::ordered_json to_json(const RunReport& report) {
-    nlohmann::ordered_json json{{"scene", report.scene},
-                                {"backend", report.backend},
-                                {"device", report.device},
-                                {"vertices", report.vertices},
-                                {"triangles", report.triangles},
-                                {"stages", report.stages},
-                                {"device_bytes", report.device_bytes},
-                                {"start_energy", to_json(report.start_energy)}};
+    nlohmann::ordered_json json{
+        {"scene", report.scene},
+        {"backend", report.backend},
+        {"device", report.device},
+        {"vertices", report.vertices},
+        {"triangles", report.triangles},
+        {"pieces", {{"count", report.pieces.count}, {"without_pin", report.pieces.without_pin}}},
+        {"light_vertices",
+         {{"count", report.light.count},
+          {"lightest", report.light.lightest},
+          {"share_of_median_mass", report.light.share_of_median}}},
+        {"stages", report.stages},
+        {"device_bytes", report.device_bytes},
+        {"start_energy", to_json(report.start_energy)}};
     json["frames"] = nlohmann::ordered_json::array();
     for (const FrameReport& frame : report.frames) json["frames"].push_back(to_json(frame));
     json["summary"] = to_json(summarize(report.frames));
@@ -142,6 +169,7 @@ nlohmann::ordered_json to_json(const RunReport& report) {
                              {"stage", report.breakdown->stage},
                              {"what", report.breakdown->what}};
     }
+    json["warnings"] = report.warnings;
     json["kernels"] = nlohmann::ordered_json::array();
     for (const KernelReport& kernel : report.kernels) {
         json["kernels"].push_back({{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}});

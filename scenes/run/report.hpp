@@ -3,6 +3,8 @@
 
 #include "pipeline/energy.hpp"
 #include "pipeline/over_stretch.hpp"
+#include "run/light_vertices.hpp"
+#include "run/pieces.hpp"
 
 #include <apsl/stats.hpp>
 
@@ -15,6 +17,16 @@
 #include <nlohmann/json_fwd.hpp>
 
 namespace apsl::scenes {
+
+/// A triangle whose area change the filter left greater than it was. Without it the result would have been better, and
+/// the rest of the cloth keeps its correction.
+struct WorsenedTriangle {
+    int frame = 0;
+    int step = 0;  ///< within the frame
+    std::uint32_t triangle = 0;
+    double area_change = 0.0;          ///< |A − A⁰| / A⁰ after the filter, the greatest of the cloth
+    double initial_area_change = 0.0;  ///< the greatest of the cloth before
+};
 
 /// One frame: the greatest over its steps, sums for counts and seconds, the worst status. Area change is
 /// |A − A⁰| / A⁰ at x + Δt v, after the filter and before collision response; edges are measured at the end of a step.
@@ -33,6 +45,9 @@ struct FrameReport {
     double collision_seconds = 0.0;
     double step_seconds = 0.0;  ///< all of the steps, without measuring and writing
     Status status = Status::ok;
+    std::uint32_t raised_vertices = 0;         ///< that weighed more than given, because the tension needs it
+    double greatest_mass_ratio = 1.0;          ///< their greatest mass over the one given
+    std::optional<WorsenedTriangle> worsened;  ///< the one that came to the greatest area change
 };
 
 /// Where a simulation broke down.
@@ -67,12 +82,15 @@ struct RunReport {
     std::string device;
     std::size_t vertices = 0;
     std::size_t triangles = 0;
+    Pieces pieces;
+    LightVertices light;
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step
     std::size_t device_bytes = 0;
     Energy start_energy;              ///< before the first step
     std::vector<FrameReport> frames;
     OverStretchReport over_stretch;
     std::optional<Breakdown> breakdown;
+    std::vector<std::string> warnings;
     std::vector<KernelReport> kernels;  ///< only of a profiled run
 };
 
@@ -90,6 +108,9 @@ struct RunSummary {
     double collision_seconds_per_frame = 0.0;
     double step_seconds_per_frame = 0.0;
     Status status = Status::ok;
+    std::uint32_t raised_vertices = 0;
+    double greatest_mass_ratio = 1.0;
+    std::optional<WorsenedTriangle> worsened;
 };
 
 RunSummary summarize(const std::vector<FrameReport>& frames);

@@ -22,20 +22,34 @@ void warn(const std::string& line) {
 
 void write_report(const std::filesystem::path& file, const nlohmann::ordered_json& report) {
     WholeFile output(file);
-    output.write(report.dump(1));
+    // The name of a scene may be any bytes.
+    output.write(report.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     output.write("\n");
     output.commit();
 }
 
-void warn_of_settings(const Scene& scene) {
+void add_settings_warning(const Scene& scene, std::vector<std::string>& warnings) {
     if (!scene.strain_limiting) return;
     const StrainLimiting& settings = *scene.strain_limiting;
     if (settings.matrix == Matrix::printed && settings.regularization.empty() &&
         settings.parameters.regularization < 2.0f) {
-        warn(scene.file +
-             ": strain_limiting: sub-steps with the printed matrix diverge for a regularization below 2; use 2 or "
-             "more, or the consistent matrix");
+        warnings.push_back(
+            scene.file +
+            ": strain_limiting: sub-steps with the printed matrix diverge for a regularization below 2; use 2 or "
+            "more, or the consistent matrix");
     }
+}
+
+// What only the run itself shows.
+std::vector<std::string> late_warnings(const Simulation& simulation, const RunReport& report) {
+    std::vector<std::string> warnings;
+    if (std::string advice = convergence_advice(report); !advice.empty()) warnings.push_back(std::move(advice));
+    if (simulation.unconverged_spring_solves() > 0) {
+        warnings.push_back("the springs' solve did not converge in " +
+                           std::to_string(simulation.unconverged_spring_solves()) +
+                           " steps; lower the time_step or the stiffness");
+    }
+    return warnings;
 }
 
 RunReport describe(const RunOptions& options, Simulation& simulation) {
@@ -86,7 +100,9 @@ int run_command(const RunOptions& options) {
     Scene scene = read_scene(options.scene, options.overrides);
     if (options.frames) scene.frames = *options.frames;
     SceneCloth cloth = make_scene_cloth(scene);
-    const std::vector<std::string> mesh_warnings = cloth.warnings;
+    std::vector<std::string> warnings = cloth.warnings;
+    const Pieces pieces = cloth.pieces;
+    const LightVertices light = cloth.light;
     std::optional<OpenClDevice> device;
     if (scene.strain_limiting && options.backend == Backend::opencl) device = choose_opencl_device(options.device);
     if (options.out) make_writable_folder(*options.out);
@@ -94,13 +110,15 @@ int run_command(const RunOptions& options) {
 
     FilterStage filter = make_filter_stage(scene, cloth.state, options.backend, device, options.profile);
     Simulation simulation(scene, std::move(cloth), std::move(filter), options.out.has_value());
-    for (const std::string& line : mesh_warnings) warn(line);
-    for (const std::string& line : simulation.warnings()) warn(line);
-    warn_of_settings(scene);
+    warnings.insert(warnings.end(), simulation.warnings().begin(), simulation.warnings().end());
+    add_settings_warning(scene, warnings);
+    for (const std::string& line : warnings) warn(line);
 
     std::optional<FrameOutput> output;
     if (options.out) output.emplace(*options.out, simulation.cloth(), scene.time_step * scene.steps_per_frame);
     RunReport report = describe(options, simulation);
+    report.pieces = pieces;
+    report.light = light;
     const bool complete = simulate(simulation, scene.frames, output, report);
     if (!complete && !report.breakdown) {
         std::fprintf(stderr, "interrupted after %zu of %d frames; no report is written\n", report.frames.size(),
@@ -112,6 +130,9 @@ int run_command(const RunOptions& options) {
     }
 
     report.over_stretch = describe(simulation.over_stretch(), simulation.cloth());
+    const std::vector<std::string> late = late_warnings(simulation, report);
+    warnings.insert(warnings.end(), late.begin(), late.end());
+    report.warnings = std::move(warnings);
 
     if (output) output->finish();
     const nlohmann::ordered_json document = to_json(report);
@@ -123,11 +144,7 @@ int run_command(const RunOptions& options) {
                     options.out->string().c_str());
         std::printf("  pictures               scenes/pictures/render.py %s\n", options.out->string().c_str());
     }
-    if (const std::string advice = convergence_advice(report); !advice.empty()) warn(advice);
-    if (simulation.unconverged_spring_solves() > 0) {
-        warn("the springs' solve did not converge in " + std::to_string(simulation.unconverged_spring_solves()) +
-             " steps; lower the time_step or the stiffness");
-    }
+    for (const std::string& line : late) warn(line);
     if (report.breakdown) {
         std::fprintf(stderr,
                      "error: %s: broke down in frame %d, step %d, stage %s: %s; try a smaller time_step with more "

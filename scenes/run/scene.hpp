@@ -4,12 +4,12 @@
 #include "pipeline/colliders.hpp"
 #include "pipeline/pins.hpp"
 #include "run/make_mesh.hpp"
+#include "run/read_mesh.hpp"
 
 #include <apsl/parameters.hpp>
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -17,11 +17,6 @@
 #include <vector>
 
 namespace apsl::scenes {
-
-struct MeshFile {
-    std::filesystem::path file;    ///< .obj or .ply; relative to the scene file
-    std::optional<double> height;  ///< m, > 0: the y-extent to scale to; as it is without
-};
 
 using MeshSource = std::variant<GridMesh, TubeMesh, MeshFile>;
 

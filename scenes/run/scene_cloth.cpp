@@ -9,6 +9,8 @@
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
 
+#include <cmath>
+#include <cstdio>
 #include <numeric>
 
 namespace apsl::scenes {
@@ -21,7 +23,7 @@ Mesh mesh_of(const TubeMesh& tube) {
     return make_mesh(tube);
 }
 Mesh mesh_of(const MeshFile& source) {
-    return read_mesh(source.file, source.height);
+    return read_mesh(source);
 }
 
 // A triangle this much smaller than the mean is nearly always a flaw of the mesh, and its area change is mostly noise.
@@ -55,13 +57,29 @@ void note_topology(const Topology& topology, const std::string& name, std::vecto
     }
 }
 
+void note_start_inside(const Scene& scene, const ClothState& cloth, std::vector<std::string>& warnings) {
+    for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+        const StartInside inside = start_inside(cloth, scene.colliders[k]);
+        if (inside.vertices == 0) continue;
+        char depth[32];
+        std::snprintf(depth, sizeof depth, "%.3g", inside.depth);
+        warnings.push_back(scene.file + ": colliders[" + std::to_string(k) +
+                           "]: vertices that start inside: " + std::to_string(inside.vertices) + ", by up to " + depth +
+                           " m; they are led out slowly, move the cloth or the collider");
+    }
+}
+
 // A pinned vertex keeps its inverse mass of 0.
 void change_masses(const Scene& scene, const Mesh& mesh, ClothState& cloth) {
     for (std::size_t k = 0; k < scene.masses.size(); ++k) {
         const std::string where = scene.file + ": masses[" + std::to_string(k) + "]";
         for (const std::uint32_t vertex : select_vertices(scene.masses[k].selection, mesh, where)) {
             cloth.masses[vertex] *= scene.masses[k].factor;
+            if (cloth.inverse_masses[vertex] == 0.0) continue;
             cloth.inverse_masses[vertex] /= scene.masses[k].factor;
+            if (!std::isnormal(cloth.masses[vertex]) || !std::isnormal(cloth.inverse_masses[vertex]))
+                throw InputError(where + ".factor: leaves vertex " + std::to_string(vertex) +
+                                 " without a mass that can be counted with, expected a factor nearer to 1");
         }
     }
 }
@@ -74,6 +92,7 @@ SceneCloth make_scene_cloth(const Scene& scene) {
     SceneCloth cloth;
     try {
         const Mesh mesh = std::visit([](const auto& source) { return mesh_of(source); }, scene.mesh);
+        cloth.warnings = mesh.warnings;
         const auto topology = Topology::build(mesh.triangles, mesh.vertex_count());
         check_rest_areas(reference::areas<double>(*topology, mesh.positions), name, cloth.warnings);
         cloth.pins = resolve_pins(scene, mesh);
@@ -82,6 +101,14 @@ SceneCloth make_scene_cloth(const Scene& scene) {
         set_start_positions(scene.start, cloth.state);
         for (double& area : cloth.state.rest_areas) area *= scene.start.rest_areas;
         note_topology(*topology, name, cloth.warnings);
+        cloth.pieces = pieces_of(cloth.state);
+        if (file != nullptr) {
+            if (const auto warning = coincidence_warning(cloth.state, cloth.pieces))
+                cloth.warnings.push_back(name + ": " + *warning);
+        }
+        cloth.light = light_vertices(cloth.state);
+        if (const auto warning = light_vertices_warning(cloth.light)) cloth.warnings.push_back(name + ": " + *warning);
+        note_start_inside(scene, cloth.state, cloth.warnings);
     } catch (const Error& error) {
         throw InputError(name + ": " + error.what());
     }

@@ -3,6 +3,8 @@
 
 #include "pipeline/cloth_state.hpp"
 #include "pipeline/pins.hpp"
+#include "run/light_vertices.hpp"
+#include "run/pieces.hpp"
 #include "run/scene.hpp"
 
 #include <string>
@@ -14,6 +16,8 @@ namespace apsl::scenes {
 struct SceneCloth {
     ClothState state;
     std::vector<PinGroup> pins;
+    Pieces pieces;
+    LightVertices light;
     std::vector<std::string> warnings;  ///< one line each, with what to do
 };
 

@@ -59,14 +59,17 @@ std::uint32_t nearest_vertex(const Mesh& mesh, const std::array<std::optional<do
 }
 
 std::vector<std::uint32_t> select(const SelectedVertices& selection, const Mesh& mesh, const std::string& where) {
-    for (std::size_t k = 0; k < selection.vertices.size(); ++k) {
-        if (selection.vertices[k] >= mesh.vertex_count()) {
-            throw InputError(where + ".vertices[" + std::to_string(k) + "]: vertex " +
-                             std::to_string(selection.vertices[k]) + " is out of range, expected 0 to " +
-                             std::to_string(mesh.vertex_count() - 1));
+    const bool welded = !mesh.welded_to.empty();
+    const std::size_t count = welded ? mesh.welded_to.size() : mesh.vertex_count();
+    std::vector<std::uint32_t> vertices = selection.vertices;
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+        if (vertices[k] >= count) {
+            throw InputError(where + ".vertices[" + std::to_string(k) + "]: vertex " + std::to_string(vertices[k]) +
+                             " is out of range, expected 0 to " + std::to_string(count - 1));
         }
+        if (welded) vertices[k] = mesh.welded_to[vertices[k]];
     }
-    return selection.vertices;
+    return vertices;
 }
 
 std::vector<std::uint32_t> select(const SelectedCorners& selection, const Mesh& mesh, const std::string& where) {

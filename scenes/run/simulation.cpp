@@ -34,6 +34,18 @@ std::string first_offender(const Stats& stats) {
     return ", first at " + (what + std::to_string(stats.offender_index));
 }
 
+// Of one call of the filter.
+void note_stats(const Stats& stats, int frame, int step, FrameReport& report) {
+    report.sub_steps += stats.sub_steps;
+    report.cg_iterations += stats.cg_iterations;
+    report.status = std::max(report.status, stats.status);
+    report.raised_vertices = std::max(report.raised_vertices, stats.raised_vertices);
+    report.greatest_mass_ratio = std::max(report.greatest_mass_ratio, static_cast<double>(stats.greatest_mass_ratio));
+    if (stats.status != Status::worsened || stats.offender != Offender::triangle) return;
+    if (report.worsened && report.worsened->area_change >= stats.max_area_change) return;
+    report.worsened = {frame, step, stats.offender_index, stats.max_area_change, stats.initial_max_area_change};
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, SceneCloth cloth, FilterStage filter, bool keep_area_changes)
@@ -46,8 +58,14 @@ Simulation::Simulation(const Scene& scene, SceneCloth cloth, FilterStage filter,
       keep_area_changes_(keep_area_changes) {
     Pins pins(cloth_, std::move(cloth.pins));
     if (pins.moving()) moving_pins_ = std::move(pins);
+    starts_inside_ = is_inside();
     make_springs(scene);
     name_stages(scene);
+}
+
+bool Simulation::is_inside() const {
+    return std::any_of(colliders_.begin(), colliders_.end(),
+                       [&](const Collider& collider) { return start_inside(cloth_, collider).vertices > 0; });
 }
 
 void Simulation::make_springs(const Scene& scene) {
@@ -121,9 +139,7 @@ void Simulation::run_step(int step, FrameReport& report) {
         const double seconds = filtering.seconds();
         report.filter_seconds += seconds;
         report.step_seconds += seconds;
-        report.sub_steps += stats->sub_steps;
-        report.cg_iterations += stats->cg_iterations;
-        report.status = std::max(report.status, stats->status);
+        note_stats(*stats, frame_, step, report);
     }
     measure_areas(report, std::holds_alternative<CustomFilter>(filter_) ? std::nullopt : stats);
     if (stats && stats->status == Status::diverged) {
@@ -133,7 +149,8 @@ void Simulation::run_step(int step, FrameReport& report) {
 
     const Stopwatch after_filter;
     if (!colliders_.empty()) {
-        resolve_collisions(cloth_, colliders_, time_step_);
+        resolve_collisions(cloth_, colliders_, time_step_, starts_inside_);
+        if (starts_inside_) starts_inside_ = is_inside();
         report.collision_seconds += after_filter.seconds();
     }
     advance_positions(cloth_, time_step_);

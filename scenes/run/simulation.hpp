@@ -45,6 +45,7 @@ private:
     void name_stages(const Scene& scene);
     void run_step(int step, FrameReport& report);
     void integrate();
+    bool is_inside() const;
     void measure_areas(FrameReport& report, const std::optional<Stats>& stats);
     void break_down(int step, const std::string& stage, const std::string& what, FrameReport& report);
 
@@ -53,6 +54,7 @@ private:
     double time_step_;
     int steps_per_frame_;
     std::vector<Collider> colliders_;
+    bool starts_inside_ = false;  // of a collider, and has not come out yet
     FilterStage filter_;
     std::optional<Pins> moving_pins_;
     std::optional<ImplicitSprings> springs_;

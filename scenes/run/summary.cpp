@@ -29,6 +29,9 @@ std::string summary_text(const RunReport& report) {
     const bool filtered = report.backend != "none";
     std::string text = format("%s: %zu vertices, %zu triangles, %zu frames\n", report.scene.c_str(), report.vertices,
                               report.triangles, report.frames.size());
+    if (report.pieces.count > 1)
+        text += format("  pieces                 %zu, %zu of them without a pin\n", report.pieces.count,
+                       report.pieces.without_pin);
     text += "  stages                 " + joined(report.stages) + "\n";
     if (filtered) {
         text += "  strain limiting on     " + report.backend + ": " + report.device;
@@ -47,6 +50,22 @@ std::string summary_text(const RunReport& report) {
             "area off by %.2f %%, %s\n",
             report.over_stretch.count, kOverStretch, worst.triangle, worst.edge_stretch, 100.0 * worst.area_change,
             why.c_str());
+    }
+    if (summary.raised_vertices > 0) {
+        text += format(
+            "  light vertices         %u of %zu too light for the tension at their triangles (lightest: %s); the "
+            "filter "
+            "raised their mass up to %.3g times: %s\n",
+            summary.raised_vertices, report.vertices, lightest_text(report.light).c_str(), summary.greatest_mass_ratio,
+            light_vertices_advice(report.light).c_str());
+    }
+    if (summary.worsened) {
+        text += format(
+            "  worsened               triangle %u in frame %d: area off by %.2f %%, where the greatest was %.2f %% "
+            "before "
+            "the filter; the rest of the cloth keeps its correction\n",
+            summary.worsened->triangle, summary.worsened->frame, 100.0 * summary.worsened->area_change,
+            100.0 * summary.worsened->initial_area_change);
     }
     if (filtered) {
         text += format("  CG iterations          %.1f a solve, %lld solves\n", summary.cg_iterations_per_solve,

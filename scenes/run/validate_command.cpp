@@ -19,9 +19,9 @@ int validate_command(const std::filesystem::path& file, const std::vector<std::s
     const double mass = std::reduce(cloth.state.masses.begin(), cloth.state.masses.end());
 
     std::printf("%s: a valid scene\n", scene.file.c_str());
-    std::printf("  mesh       %zu vertices, %zu triangles, %zu components, %zu boundary edges\n",
-                topology.vertex_count(), topology.triangle_count(), topology.component_count(),
-                topology.boundary_edge_count());
+    std::printf("  mesh       %zu vertices, %zu triangles, %zu boundary edges\n", topology.vertex_count(),
+                topology.triangle_count(), topology.boundary_edge_count());
+    std::printf("  pieces     %zu, %zu of them without a pin\n", cloth.pieces.count, cloth.pieces.without_pin);
     std::printf("  cloth      %.4g m² at rest, %.4g kg\n", area, mass);
     std::printf("  pins       %zu vertices in %zu groups\n", pinned_vertices(cloth.pins).size(), cloth.pins.size());
     std::printf("  time       %d frames of %d steps of %.4g s\n", scene.frames, scene.steps_per_frame, scene.time_step);

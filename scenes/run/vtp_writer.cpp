@@ -50,7 +50,6 @@ void write_vtp(const std::filesystem::path& file, const ClothState& cloth, std::
         connectivity.insert(connectivity.end(), triangle.begin(), triangle.end());
         offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
     }
-    const std::vector<float> points(cloth.positions.begin(), cloth.positions.end());
     const std::vector<float> velocities(cloth.velocities.begin(), cloth.velocities.end());
     const std::vector<float> changes(area_changes.begin(), area_changes.end());
 
@@ -62,7 +61,7 @@ void write_vtp(const std::filesystem::path& file, const ClothState& cloth, std::
         "\" NumberOfPolys=\"" + std::to_string(topology.triangle_count()) + "\">\n";
     text += "<PointData Vectors=\"velocity\">\n" + arrays.add("velocity", "Float32", 3, velocities) + "</PointData>\n";
     text += "<CellData Scalars=\"area_change\">\n" + arrays.add("area_change", "Float32", 1, changes) + "</CellData>\n";
-    text += "<Points>\n" + arrays.add("Points", "Float32", 3, points) + "</Points>\n";
+    text += "<Points>\n" + arrays.add("Points", "Float64", 3, cloth.positions) + "</Points>\n";
     text += "<Polys>\n" + arrays.add("connectivity", "Int64", 1, connectivity) +
             arrays.add("offsets", "Int64", 1, offsets) + "</Polys>\n";
     text += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";

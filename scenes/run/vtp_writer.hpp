@@ -8,8 +8,8 @@
 
 namespace apsl::scenes {
 
-/// One frame for ParaView and VTK: XML PolyData with raw appended 32-bit arrays, cell data `area_change` ([T], as in
-/// FrameReport), point data `velocity` (m/s, [V]). Throws InputError where the file cannot be written.
+/// One frame for ParaView and VTK: XML PolyData with raw appended arrays: 64-bit points, cell data `area_change` ([T],
+/// as in FrameReport), point data `velocity` (m/s, [V]). Throws InputError where the file cannot be written.
 void write_vtp(const std::filesystem::path& file, const ClothState& cloth, std::span<const double> area_changes);
 
 /// Names the frames of a sequence for ParaView, with their times: `frames` files frame_0000.vtp and so on in the folder

@@ -3,8 +3,11 @@
 
 #include <charconv>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <type_traits>
 
 namespace apsl::scenes {
 
@@ -37,12 +40,19 @@ inline std::string quoted(std::string_view text) {
     return shown.append(text.size() > 60 ? "...\"" : "\"");
 }
 
-/// The number that all of the word is; false where it is none, or out of Number's range.
+/// The number that all of the word is; false where it is none. Whole ones out of Number's range are none; others
+/// become 0 or infinite, as by strtod.
 template <class Number>
 bool parse_number(std::string_view word, Number& number) {
-    if (word.starts_with('+')) word.remove_prefix(1);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    return error == std::errc{} && end == word.data() + word.size();
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+    const char* const word_end = word.data() + word.size();
+    const auto [end, error] = std::from_chars(word.data(), word_end, number);
+    if constexpr (std::is_same_v<Number, double>) {
+        // from_chars does not say on which side of the range it is.
+        if (error == std::errc::result_out_of_range) number = std::strtod(std::string(word).c_str(), nullptr);
+        return error != std::errc::invalid_argument && end == word_end;
+    }
+    return error == std::errc{} && end == word_end;
 }
 
 }  // namespace apsl::scenes

@@ -11,6 +11,7 @@ template <class Real>
 AreaChange area_change(std::span<const TriangleGeometry<Real>> geometry, std::span<const Real> rest_areas) {
     double max = 0.0;
     double weighted_squares = 0.0;
+    double capped_squares = 0.0;
     double weights = 0.0;
     bool finite = true;
     constexpr double greatest = std::numeric_limits<float>::max();  // Stats are 32-bit, and so is what they are made of
@@ -21,9 +22,12 @@ AreaChange area_change(std::span<const TriangleGeometry<Real>> geometry, std::sp
         finite = finite && change * change <= greatest;  // false for NaN too
         max = std::max(max, change);
         weighted_squares += rest_area * change * change;
+        const double capped = std::min(change, 1.0);
+        capped_squares += rest_area * capped * capped;
         weights += rest_area;
     }
-    return {max, weights > 0.0 ? std::sqrt(weighted_squares / weights) : 0.0, finite};
+    const auto root_mean = [&](double squares) { return weights > 0.0 ? std::sqrt(squares / weights) : 0.0; };
+    return {max, root_mean(weighted_squares), root_mean(capped_squares), finite};
 }
 
 template AreaChange area_change(std::span<const TriangleGeometry<double>>, std::span<const double>);

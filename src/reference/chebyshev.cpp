@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reference/chebyshev.hpp"
 
+#include "finite.hpp"
+
 #include <apsl/topology.hpp>
 
 #include <algorithm>
@@ -22,22 +24,38 @@ Real greatest_eigenvalue(const Eigen::Matrix<Real, 3, 3>& M) {
 }  // namespace
 
 template <class Real>
-void diagonal_bound(const Topology& topology, std::span<const TriangleGeometry<Real>> geometry,
-                    std::span<const Real> inverse_masses, TriangleVector<Real>& bound) {
+void vertex_bounds(const Topology& topology, std::span<const TriangleGeometry<Real>> geometry,
+                   std::vector<Real>& bounds) {
     const auto triangles = topology.triangles();
     std::vector<Eigen::Matrix<Real, 3, 3>> around(topology.vertex_count(), Eigen::Matrix<Real, 3, 3>::Zero());
+    std::vector<Real> unknown(around.size(), Real(0));
     for (std::size_t a = 0; a < triangles.size(); ++a)
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t i = triangles[a][k];
-            const Vector3<Real>& g = geometry[a].gradients[k];
-            around[i] += Real(0.5) * inverse_masses[i] * g * g.transpose();
+            const Vector3<Real> direction = geometry[a].gradients[k].stableNormalized();
+            if (direction.squaredNorm() > Real(0))
+                around[i] += direction * direction.transpose();
+            else
+                unknown[i] += Real(1);
         }
-    std::vector<Real> greatest(around.size());
-    std::transform(around.begin(), around.end(), greatest.begin(), greatest_eigenvalue<Real>);
+    bounds.resize(around.size());
+    for (std::size_t i = 0; i < around.size(); ++i) bounds[i] = greatest_eigenvalue(around[i]) + unknown[i];
+}
+
+template <class Real>
+void diagonal_bound(const Topology& topology, std::span<const TriangleGeometry<Real>> geometry,
+                    std::span<const Real> inverse_masses, std::span<const Real> vertex_bounds,
+                    TriangleVector<Real>& bound) {
+    const auto triangles = topology.triangles();
     bound.resize(static_cast<Eigen::Index>(triangles.size()));
-    for (std::size_t a = 0; a < triangles.size(); ++a)
-        bound[static_cast<Eigen::Index>(a)] =
-            greatest[triangles[a][0]] + greatest[triangles[a][1]] + greatest[triangles[a][2]];
+    for (std::size_t a = 0; a < triangles.size(); ++a) {
+        Real sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t i = triangles[a][k];
+            sum += vertex_bounds[i] * Real(0.5) * inverse_masses[i] * geometry[a].gradients[k].squaredNorm();
+        }
+        bound[static_cast<Eigen::Index>(a)] = sum;
+    }
 }
 
 template <class Real>
@@ -46,7 +64,7 @@ void chebyshev(const SparseMatrix<Real>& G, const TriangleVector<Real>& bound, c
     auto& [inverse_bound, r, step, product] = scratch;
     inverse_bound = bound.cwiseInverse();
     for (Real& inverse : inverse_bound)
-        if (!std::isfinite(inverse)) inverse = Real(0);
+        if (!is_finite(inverse)) inverse = Real(0);
 
     // T_d(σ) = 3 at x = 0; the polynomial swings between ±1/3 from x = low to x = 1.
     const Real sigma = std::cosh(std::acosh(Real(3)) / static_cast<Real>(products + 1));
@@ -66,10 +84,12 @@ void chebyshev(const SparseMatrix<Real>& G, const TriangleVector<Real>& bound, c
     }
 }
 
+template void vertex_bounds(const Topology&, std::span<const TriangleGeometry<double>>, std::vector<double>&);
+template void vertex_bounds(const Topology&, std::span<const TriangleGeometry<float>>, std::vector<float>&);
 template void diagonal_bound(const Topology&, std::span<const TriangleGeometry<double>>, std::span<const double>,
-                             TriangleVector<double>&);
+                             std::span<const double>, TriangleVector<double>&);
 template void diagonal_bound(const Topology&, std::span<const TriangleGeometry<float>>, std::span<const float>,
-                             TriangleVector<float>&);
+                             std::span<const float>, TriangleVector<float>&);
 template void chebyshev(const SparseMatrix<double>&, const TriangleVector<double>&, const TriangleVector<double>&, int,
                         ChebyshevScratch<double>&, TriangleVector<double>&);
 template void chebyshev(const SparseMatrix<float>&, const TriangleVector<float>&, const TriangleVector<float>&, int,

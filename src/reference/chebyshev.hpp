@@ -10,15 +10,21 @@
 
 namespace apsl::reference {
 
+/// s, [V]: how far the corner gradients around a vertex point the same way. With J_i the matrix whose rows are the
+/// g_{a,i} of the n triangles around vertex i, J_i J_iᵀ ≼ s_i diag(|g_{a,i}|²); s_i is the greatest eigenvalue of
+/// Σ_{a∋i} ĝ ĝᵀ, ĝ = g/|g|, between n/3 and n. Taken for it is the 32nd root of the sum of the eigenvalues' 32nd
+/// powers, up to 1.04 times as much. A gradient without a direction may get any, and adds 1.
+template <class Real>
+void vertex_bounds(const Topology& topology, std::span<const TriangleGeometry<Real>> geometry,
+                   std::vector<Real>& bounds);
+
 /// B, [T], with G ≼ diag(B) for the consistent matrix G: no eigenvalue of diag(B)^(−1/2) G diag(B)^(−1/2) is above 1.
-///
-/// G is a sum over vertices of ½ w_i J_i J_iᵀ, the rows of J_i being the g_{a,i} of the triangles around i: no greater
-/// there than its greatest eigenvalue σ_i, which is that of the 3×3 matrix ½ w_i Σ_{a∋i} g gᵀ, and nothing elsewhere.
-/// So B_a = Σ_{i∈a} σ_i. Taken for σ_i is the 32nd root of the sum of the eigenvalues' 32nd powers, up to 1.04 times as
-/// much.
+/// G is a sum over vertices of ½ w_i J_i J_iᵀ, so B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|². Masses and edge lengths are those
+/// of `geometry` and `inverse_masses`; only directions are those that `vertex_bounds` were made from.
 template <class Real>
 void diagonal_bound(const Topology& topology, std::span<const TriangleGeometry<Real>> geometry,
-                    std::span<const Real> inverse_masses, TriangleVector<Real>& bound);
+                    std::span<const Real> inverse_masses, std::span<const Real> vertex_bounds,
+                    TriangleVector<Real>& bound);
 
 /// The vectors that a Chebyshev solve needs; kept from one solve to the next.
 template <class Real>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "finite.hpp"
+
 #include <apsl/error.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <sstream>
@@ -24,7 +25,7 @@ template <class Real, class Legal>
 void check_values(const char* name, const char* place, std::span<const Real> values, const char* expected,
                   Legal legal) {
     for (std::size_t n = 0; n < values.size(); ++n)
-        if (!std::isfinite(values[n]) || !legal(values[n])) {
+        if (!is_finite(values[n]) || !legal(values[n])) {
             std::ostringstream message;
             message << name << " of " << place << " " << n << " is " << values[n] << ", expected " << expected;
             throw Error(ErrorCode::invalid_argument, message.str());

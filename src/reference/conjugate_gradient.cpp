@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reference/conjugate_gradient.hpp"
 
+#include "finite.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -14,7 +16,7 @@ void start_from_guess(const SparseMatrix<Real>& A, const TriangleVector<Real>& b
     product.noalias() = A * lambda;
     const Real curvature = lambda.dot(product);
     const Real scale = b.dot(lambda) / curvature;
-    if (curvature > Real(0) && std::isfinite(scale)) {
+    if (curvature > Real(0) && is_finite(scale)) {
         lambda *= scale;
         r = b - scale * product;
     } else {
@@ -35,7 +37,7 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
     inverse_diagonal = A.diagonal().cwiseInverse();
     // Also where 1/D overflows.
     for (Real& inverse : inverse_diagonal)
-        if (!std::isfinite(inverse)) inverse = Real(0);
+        if (!is_finite(inverse)) inverse = Real(0);
 
     if (guessed) {
         start_from_guess(A, b, q, r, lambda);
@@ -46,7 +48,7 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
     z = inverse_diagonal.cwiseProduct(r);
     p = z;
     Real rz = r.dot(z);
-    if (!std::isfinite(rz)) return {0, not_a_number, false};
+    if (!is_finite(rz)) return {0, not_a_number, false};
     // A row without a diagonal cannot be reduced and has no say in when to stop.
     const auto norm = [&inverse_diagonal](const TriangleVector<Real>& v) {
         return std::sqrt((inverse_diagonal.array() > Real(0)).select(v.array().square(), Real(0)).sum());
@@ -60,7 +62,7 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
     while (result.iterations < max_iterations && rz > Real(0)) {  // 0 where squares of what is left underflow
         q.noalias() = A * p;
         const Real pq = p.dot(q);
-        if (!std::isfinite(pq)) return {result.iterations, not_a_number, false};
+        if (!is_finite(pq)) return {result.iterations, not_a_number, false};
         if (pq <= std::numeric_limits<Real>::epsilon() * pDp) break;
 
         const Real step = rz / pq;
@@ -69,7 +71,7 @@ SolveResult<Real> conjugate_gradient(const SparseMatrix<Real>& A, const Triangle
         z = inverse_diagonal.cwiseProduct(r);
         const Real next_rz = r.dot(z);
         ++result.iterations;
-        if (!std::isfinite(next_rz)) return {result.iterations, not_a_number, false};
+        if (!is_finite(next_rz)) return {result.iterations, not_a_number, false};
         const Real norm_r = norm(r);
         result.relative_residual = norm_r / norm_b;
         if (norm_r <= tolerance * norm_b) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "finite.hpp"
 #include "reference/check.hpp"
 #include "reference/geometry.hpp"
 
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
-
-#include <cmath>
 
 namespace apsl::reference {
 
@@ -23,7 +22,7 @@ std::vector<Real> inverse_masses(const Topology& topology, std::span<const Real>
     check_size("rest_areas", rest_areas.size(), topology.triangle_count());
     check_values("rest_areas", "triangle", rest_areas, "a finite number >= 0 (m2)",
                  [](Real area) { return area >= Real(0); });
-    if (!(std::isfinite(density) && density > Real(0)))
+    if (!(is_finite(density) && density > Real(0)))
         throw Error(ErrorCode::invalid_argument,
                     "density is " + std::to_string(density) + ", expected a finite number > 0 (kg/m2)");
     std::vector<Real> masses(topology.vertex_count(), Real(0));

@@ -2,16 +2,19 @@
 //
 // Algorithm 1: predict, solve for the pressures, displace, repeat; only the corrections go into the velocities.
 
+#include "finite.hpp"
 #include "reference/adaptive_regularization.hpp"
 #include "reference/area_change.hpp"
 #include "reference/chebyshev.hpp"
 #include "reference/check.hpp"
 #include "reference/conjugate_gradient.hpp"
 #include "reference/displacements.hpp"
+#include "reference/effective_masses.hpp"
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
 
 #include "chebyshev_products.hpp"
+#include "raised_masses.hpp"
 #include "scheduled_regularization.hpp"
 #include "stepping.hpp"
 
@@ -19,7 +22,6 @@
 #include <apsl/reference.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -44,14 +46,14 @@ void check(const Topology& topology, const Buffers<Real>& buffers) {
 
 template <class Real>
 bool all_finite(std::span<const Real> numbers) {
-    return std::all_of(numbers.begin(), numbers.end(), [](Real number) { return std::isfinite(number); });
+    return std::all_of(numbers.begin(), numbers.end(), [](Real number) { return is_finite(number); });
 }
 
 /// The first vertex with a number that is not finite, or the count of vertices.
 template <class Real>
 std::size_t first_bad_vertex(std::span<const Real> coordinates) {
     std::size_t n = 0;
-    while (n < coordinates.size() && std::isfinite(coordinates[n])) ++n;
+    while (n < coordinates.size() && is_finite(coordinates[n])) ++n;
     return n / 3;
 }
 
@@ -77,13 +79,16 @@ struct BasicStrainLimiter<Real>::Implementation {
     std::vector<Real> total;      // what the corrections so far add to the end of the step
     std::vector<Real> correction;
     std::vector<TriangleGeometry<Real>> geometry;
-    TriangleVector<Real> area_excess;  // b = A − A⁰
+    EffectiveMasses<Real> masses;
+    TriangleVector<Real> start_error;  // A(x̃) − A⁰, only on a walk
+    TriangleVector<Real> area_excess;  // b
     TriangleVector<Real> lambda;
     std::vector<Real> effective_regularization;  // α, [T]
     Real adaptive_factor = Real(1);              // outlives the call
     std::vector<TriangleVector<Real>> kept;      // √(α D) λ of the sub-steps of the call before
     ConjugateGradientScratch<Real> scratch;
-    TriangleVector<Real> bound;  // B over D with its margin, [T]
+    std::vector<Real> direction_bounds;  // s, [V]
+    TriangleVector<Real> bound;          // B with its margin, [T]
     ChebyshevScratch<Real> chebyshev_scratch;
     Stats stats{};
 
@@ -104,57 +109,64 @@ struct BasicStrainLimiter<Real>::Implementation {
         return area_change<Real>(geometry, buffers.rest_areas);
     }
 
-    /// The first of `parts` parts of the step.
-    void start_walk(const Buffers<Real>& buffers, Real time_step, int parts) {
+    /// What the areas are off by at the start of the step, and the first of its `parts` parts.
+    AreaChange start_walk(const Buffers<Real>& buffers, Real time_step, int parts) {
+        std::copy(buffers.positions.begin(), buffers.positions.end(), moved.begin());
+        const AreaChange at_start = measure(buffers);
+        if (!at_start.finite) return at_start;
+        start_error = area_errors(buffers);
         motion.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) {
             motion[n] = time_step * buffers.velocities[n];
             moved[n] = buffers.positions[n] + motion[n] / static_cast<Real>(parts);
         }
+        return measure(buffers);
     }
 
-    /// b = A − A⁰ at the present geometry.
-    void measure_excess(const Buffers<Real>& buffers) {
-        area_excess.resize(static_cast<Eigen::Index>(geometry.size()));
+    /// A − A⁰ at the present geometry; 0 where there is no rest area.
+    TriangleVector<Real> area_errors(const Buffers<Real>& buffers) const {
+        TriangleVector<Real> errors(static_cast<Eigen::Index>(geometry.size()));
         for (std::size_t a = 0; a < geometry.size(); ++a)
-            area_excess[a] = buffers.rest_areas[a] == Real(0) ? Real(0) : geometry[a].area - buffers.rest_areas[a];
+            errors[a] = buffers.rest_areas[a] == Real(0) ? Real(0) : geometry[a].area - buffers.rest_areas[a];
+        return errors;
     }
 
-    /// The bound of G at the present geometry, over D, so that the geometry of a later sub-step scales it.
-    void bound_matrix(const Buffers<Real>& buffers) {
-        diagonal_bound(*topology, std::span<const TriangleGeometry<Real>>(geometry), buffers.inverse_masses, bound);
-        for (Eigen::Index a = 0; a < bound.size(); ++a) {
-            const Real diagonal = G.coeff(a, a);
-            bound[a] = diagonal > Real(0) ? static_cast<Real>(bound_margin) * bound[a] / diagonal
-                                          : static_cast<Real>(unknown_bound);
-        }
+    /// b at the present geometry, in sub-step stats.sub_steps of a walk of `parts` parts: what is left of the start's
+    /// error stays for now, and no triangle is asked for more growth than a linearised step can give it.
+    void find_excess(const Buffers<Real>& buffers, int parts) {
+        area_excess = area_errors(buffers);
+        if (parts == 0) return;
+        area_excess -= static_cast<Real>(start_error_left(stats.sub_steps, parts)) * start_error;
+        for (std::size_t a = 0; a < geometry.size(); ++a)
+            area_excess[a] = std::max(area_excess[a], Real(1 - greatest_growth) * geometry[a].area);
     }
 
     /// A Chebyshev polynomial in place of a solve, of the degree that belongs to α; λ is left in `lambda`.
-    SolveResult<Real> solve_by_chebyshev(const Buffers<Real>& buffers, const Parameters& parameters) {
+    SolveResult<Real> solve_by_chebyshev(const Parameters& parameters) {
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
-        consistent_matrix(*topology, shared, triangles, buffers.inverse_masses, G);
-        if (stats.sub_steps == 0) bound_matrix(buffers);
-        measure_excess(buffers);
+        consistent_matrix(*topology, shared, triangles, std::span<const Real>(masses.inverse), G);
+        if (stats.sub_steps == 0) vertex_bounds(*topology, triangles, direction_bounds);
+        diagonal_bound(*topology, triangles, std::span<const Real>(masses.inverse),
+                       std::span<const Real>(direction_bounds), bound);
+        bound *= static_cast<Real>(bound_margin);
         const double alpha =
             scheduled_regularization(static_cast<double>(parameters.regularization), parameters, stats.sub_steps);
         const int products = chebyshev_products(alpha, parameters.max_iterations);
-        const TriangleVector<Real> scale = bound.cwiseProduct(G.diagonal());
-        chebyshev(G, scale, area_excess, products, chebyshev_scratch, lambda);
-        const int next = stats.sub_steps + 1;
-        if (next < parameters.sub_steps && next % bound_period == 0) bound_matrix(buffers);
+        chebyshev(G, bound, area_excess, products, chebyshev_scratch, lambda);
         const bool finite = lambda.allFinite();
         return {products, finite ? Real(0) : std::numeric_limits<Real>::quiet_NaN(), true};
     }
 
     /// One solve of (G + (α − 1) diag G) λ = b at the present geometry; λ is left in `lambda`.
     SolveResult<Real> solve(const Buffers<Real>& buffers, const Parameters& parameters) {
-        if (solver == Solver::chebyshev) return solve_by_chebyshev(buffers, parameters);
+        find_excess(buffers, walked_sub_steps(parameters));
+        if (solver == Solver::chebyshev) return solve_by_chebyshev(parameters);
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
+        const std::span<const Real> inverse_masses = masses.inverse;
         if (matrix == Matrix::consistent)
-            consistent_matrix(*topology, shared, triangles, buffers.inverse_masses, G);
+            consistent_matrix(*topology, shared, triangles, inverse_masses, G);
         else
-            printed_matrix(*topology, shared, triangles, buffers.inverse_masses, G);
+            printed_matrix(*topology, shared, triangles, inverse_masses, G);
         effective_regularization.resize(geometry.size());
         for (std::size_t a = 0; a < geometry.size(); ++a) {
             const Real given = buffers.regularization.empty() ? static_cast<Real>(parameters.regularization)
@@ -164,7 +176,6 @@ struct BasicStrainLimiter<Real>::Implementation {
         }
         regularize(std::span<const Real>(effective_regularization), G);
 
-        measure_excess(buffers);
         const auto tolerance = static_cast<Real>(solve_tolerance(parameters));
         if (kept.empty())
             return conjugate_gradient(G, area_excess, tolerance, parameters.max_iterations, scratch, lambda);
@@ -178,10 +189,28 @@ struct BasicStrainLimiter<Real>::Implementation {
         return result;
     }
 
+    /// What sub-step stats.sub_steps leaves to the next: masses, and the bounds that the matrix is scaled by.
+    void prepare_next(const Buffers<Real>& buffers, const Parameters& parameters) {
+        const int next = stats.sub_steps + 1;
+        if (next == parameters.sub_steps) return;
+        if (raises_masses(parameters)) masses.raise(buffers.inverse_masses);
+        if (solver != Solver::chebyshev || next % bound_period != 0) return;
+        vertex_bounds(*topology, std::span<const TriangleGeometry<Real>>(geometry), direction_bounds);
+        for (std::size_t i = 0; i < direction_bounds.size(); ++i)
+            if (masses.inverse[i] < buffers.inverse_masses[i]) direction_bounds[i] *= static_cast<Real>(raised_margin);
+    }
+
     /// Corrects x_j. On a walk of `parts` parts a displacement of sub-step k changes the velocity too, by parts · Δx /
     /// Δt, and carries on through the parts left.
-    void displace(std::span<const Real> inverse_masses, int sub_step, int parts) {
-        displacements<Real>(*topology, geometry, inverse_masses, {lambda.data(), geometry.size()}, correction);
+    void displace(std::span<const Real> inverse_masses, const Parameters& parameters) {
+        const int sub_step = stats.sub_steps, parts = walked_sub_steps(parameters);
+        const std::span<const Real> pressures{lambda.data(), geometry.size()};
+        displacements<Real>(*topology, geometry, masses.inverse, pressures, correction);
+        if (raises_masses(parameters)) {
+            masses.find_tension(*topology, geometry, pressures);
+            for (std::size_t n = 0; n < correction.size(); ++n)
+                correction[n] *= masses.share_taken(n / 3, inverse_masses[n / 3]);
+        }
         const auto carried = static_cast<Real>(std::max(parts - sub_step, 1));
         for (std::size_t n = 0; n < moved.size(); ++n) {
             moved[n] += correction[n];
@@ -217,15 +246,42 @@ struct BasicStrainLimiter<Real>::Implementation {
                 return name_offender(Offender::triangle, a);
     }
 
-    /// True where what the call did is to be dropped: greatest and RMS area change are then those at x̃ + Δt ṽ. Between
-    /// a greater maximum and a greater RMS, the RMS decides: it is what the solves reduce.
-    bool is_worse(const AreaChange& initial, const AreaChange& change) {
-        const bool rose = change.max > initial.max || change.rms > initial.rms;
+    /// True where the result of the call is dropped: greatest and RMS area change are then those at x̃ + Δt ṽ. The
+    /// capped RMS decides, so that a single triangle does not cost the others their correction. Where the result stands
+    /// and the greatest rose, the triangle that has it is named.
+    bool is_worse(const AreaChange& initial, const AreaChange& change, std::span<const Real> rest_areas) {
+        const bool rose =
+            change.max > initial.max || change.rms > initial.rms || change.capped_rms > initial.capped_rms;
         const bool at_rest = initial.max <= 1e-5;  // 32-bit positions tell no better
-        const bool worse = rose && (at_rest || change.rms >= initial.rms);
+        const bool worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
         set_area_change(worse ? initial : change);
         if (rose && !at_rest) stats.status = Status::worsened;
+        if (!worse && change.max > initial.max) name_offender(Offender::triangle, worst_triangle(rest_areas));
         return worse;
+    }
+
+    /// The first triangle with the greatest area change.
+    std::size_t worst_triangle(std::span<const Real> rest_areas) const {
+        std::size_t worst = 0;
+        double greatest = -1.0;
+        for (std::size_t a = 0; a < geometry.size(); ++a) {
+            const double change = area_change<Real>(std::span(geometry).subspan(a, 1), rest_areas.subspan(a, 1)).max;
+            if (change > greatest) {
+                greatest = change;
+                worst = a;
+            }
+        }
+        return worst;
+    }
+
+    /// Vertices that weighed more than given in the last sub-step.
+    void count_raised(std::span<const Real> inverse_masses) {
+        for (std::size_t i = 0; i < inverse_masses.size(); ++i) {
+            if (!(masses.inverse[i] < inverse_masses[i])) continue;
+            ++stats.raised_vertices;
+            stats.greatest_mass_ratio =
+                std::max(stats.greatest_mass_ratio, static_cast<float>(inverse_masses[i] / masses.inverse[i]));
+        }
     }
 
     void set_area_change(const AreaChange& change) {
@@ -233,12 +289,14 @@ struct BasicStrainLimiter<Real>::Implementation {
         stats.rms_area_change = static_cast<float>(change.rms);
     }
 
-    /// Leaves the outcome in `stats`; what is not finite ends it as diverged, with the last finite area change.
+    /// Leaves the outcome in `stats`; what is not finite ends it as diverged, with the area change of the velocities as
+    /// given.
     void filter(const Buffers<Real>& buffers, const Parameters& parameters) {
         const Real time_step = parameters.time_step;
         const int parts = walked_sub_steps(parameters);
         stats = {};
         stats.status = Status::diverged;
+        stats.greatest_mass_ratio = 1.0f;
         predict(buffers, time_step);
         if (!all_finite<Real>(predicted)) return name_offender(Offender::vertex, first_bad_vertex<Real>(predicted));
         const AreaChange initial = measure(buffers);
@@ -250,21 +308,19 @@ struct BasicStrainLimiter<Real>::Implementation {
         AreaChange change = initial;
         bool all_converged = true;
         const auto target = static_cast<double>(parameters.target_area_change);
-        if (parts > 0 && initial.max > target) {
-            start_walk(buffers, time_step, parts);
-            change = measure(buffers);
-        }
+        masses.start(buffers.inverse_masses);
+        if (parts > 0 && initial.max > target) change = start_walk(buffers, time_step, parts);
         for (;;) {
             if (!change.finite) return name_triangle(buffers);
-            set_area_change(change);
             if (stats.sub_steps == parameters.sub_steps) break;
             // On the way the areas are not those of the end of the step.
             const bool at_the_end = stats.sub_steps >= parts || initial.max <= target;
             if (at_the_end && change.max <= target) break;
 
             const SolveResult<Real> result = solve(buffers, parameters);
-            if (!std::isfinite(result.relative_residual)) return;
-            displace(buffers.inverse_masses, stats.sub_steps, parts);
+            if (!is_finite(result.relative_residual)) return;
+            displace(buffers.inverse_masses, parameters);
+            prepare_next(buffers, parameters);
             ++stats.sub_steps;
             stats.cg_iterations +=
                 result.iterations + (kept.empty() ? 0 : 1);  // the product with a guess costs as much
@@ -277,7 +333,8 @@ struct BasicStrainLimiter<Real>::Implementation {
         const bool any = stats.sub_steps > 0;
         if (any && !filtered_velocities(buffers, time_step)) return;
         stats.status = all_converged ? Status::ok : Status::not_converged;
-        if (!is_worse(initial, change) && any)
+        count_raised(buffers.inverse_masses);
+        if (!is_worse(initial, change, buffers.rest_areas) && any)
             std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
     }
 };
@@ -322,11 +379,13 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
     const auto rows = static_cast<std::size_t>(i.G.rows());
     return entries * (sizeof(Real) + sizeof(int)) + (rows + 1) * sizeof(int) + bytes(i.shared) + bytes(i.predicted) +
            bytes(i.moved) + bytes(i.motion) + bytes(i.total) + bytes(i.correction) + bytes(i.geometry) +
-           bytes(i.area_excess) + bytes(i.lambda) + bytes(i.effective_regularization) +
+           bytes(i.area_excess) + bytes(i.start_error) + bytes(i.masses.inverse) + bytes(i.masses.tension) +
+           bytes(i.masses.stiffness) + bytes(i.lambda) + bytes(i.effective_regularization) +
            i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) + bytes(i.scratch.inverse_diagonal) +
            bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) +
-           bytes(i.scratch.product) + bytes(i.bound) + bytes(i.chebyshev_scratch.inverse_bound) +
-           bytes(i.chebyshev_scratch.residual) + bytes(i.chebyshev_scratch.step) + bytes(i.chebyshev_scratch.product);
+           bytes(i.scratch.product) + bytes(i.direction_bounds) + bytes(i.bound) +
+           bytes(i.chebyshev_scratch.inverse_bound) + bytes(i.chebyshev_scratch.residual) +
+           bytes(i.chebyshev_scratch.step) + bytes(i.chebyshev_scratch.product);
 }
 
 template <class Real>

@@ -32,8 +32,10 @@ NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSL_KEPT_PRESSURES": 8}, {"APSL_RE
                 "gather_displacements.cl": ({"APSL_KEPT_PRESSURES": 8, "APSL_CHEBYSHEV": 1},
                                             {"APSL_POSITION_STRIDE": 1, "APSL_CHEBYSHEV": 1},
                                             {"APSL_POSITION_STRIDE": 4, "APSL_CHEBYSHEV": 1}),
-                "order_triangle_values.cl": ({"APSL_CHEBYSHEV": 1},),
-                "measure_area_change.cl": ({"APSL_CHEBYSHEV": 1},)}
+                "order_triangle_values.cl": ({"APSL_CHEBYSHEV": 1}, {"APSL_POSITIONS_ONLY": 1}),
+                "measure_area_change.cl": ({"APSL_CHEBYSHEV": 1}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1},
+                                           {"APSL_POSITIONS_ONLY": 1}),
+                "assemble_gradients.cl": ({"APSL_CHEBYSHEV": 1, "APSL_POSITIONS_ONLY": 1},)}
 
 
 @dataclass(frozen=True)

@@ -79,6 +79,8 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     last_error_says("triangles is null");
     CHECK(apsl_topology_create(bad, 1, 3, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
     CHECK(apsl_topology_create(nullptr, 0, 3, &topology) == APSL_ERROR_INVALID_MESH);
+    CHECK(apsl_topology_create(bad, SIZE_MAX, 3, &topology) == APSL_ERROR_OUT_OF_MEMORY);
+    CHECK(topology == nullptr);
 
     const CTopology good(cloth);
     const apsl_topology* const cloths[] = {good.topology, nullptr};
@@ -103,7 +105,8 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     CHECK(apsl_limiter_create(device().context, device().id, cloths, 2, nullptr, &limiter) ==
           APSL_ERROR_INVALID_ARGUMENT);
     last_error_says("topology is null");
-    CHECK(apsl_limiter_create(nullptr, device().id, cloths, 1, nullptr, &limiter) == APSL_ERROR_OPENCL);
+    CHECK(apsl_limiter_create(nullptr, device().id, cloths, 1, nullptr, &limiter) == APSL_ERROR_INVALID_ARGUMENT);
+    last_error_says("context is null");
     CHECK(apsl_limiter_scratch_bytes(nullptr) == 0);
     REQUIRE(apsl_limiter_create(device().context, device().id, cloths, 1, nullptr, &limiter) == APSL_SUCCESS);
 

@@ -21,7 +21,7 @@ struct OpenClReferences {
 /// The program's OpenCL calls since it began. This program defines these entry points itself and hands each call on.
 struct OpenClCalls {
     int host_waits = 0;      ///< clFinish, clWaitForEvents
-    int polls = 0;           ///< clGetEventInfo
+    int polls = 0;           ///< clGetEventInfo for how far a command is
     int blocking_calls = 0;  ///< reads, writes and maps with a blocking flag
     int reads = 0;           ///< clEnqueueReadBuffer, clEnqueueMapBuffer, blocking or not
     int allocations = 0;     ///< clCreateBuffer

@@ -169,7 +169,8 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       direction(poison<float>(adjacency.triangle_count)),
       direction_product(poison<float>(adjacency.triangle_count)),
       pressure(poison<float>(adjacency.triangle_count)),
-      vertex_bound(poison<float>(adjacency.vertex_count)),
+      vertex_bounds(poison<float>(adjacency.vertex_count)),
+      start_errors(poisoned_triangles()),
       ordered_rest_areas(over_triangles([&](std::size_t c, std::size_t a) { return sources[c].rest_areas[a]; })),
       ordered_regularization(
           over_triangles([&](std::size_t c, std::size_t a) { return sources[c].regularization[a]; })),

@@ -22,7 +22,7 @@ struct Placement {
 struct Gradients {
     cl_short4 corner[3];  ///< w is zero
     float shift;          ///< (α − 1)/α
-    float unused;
+    float stiffening;     ///< √(α D) / A
 };
 static_assert(sizeof(Gradients) == 32);
 
@@ -63,7 +63,8 @@ struct Arrays {
     DeviceArray<float> values;   ///< the scaled matrix
     DeviceArray<float> product;  ///< poisoned, 0 in the padding; the rest is poisoned there too
     DeviceArray<float> direction, direction_product, pressure;
-    DeviceArray<float> vertex_bound;                                ///< of bound_vertices
+    DeviceArray<float> vertex_bounds;                               ///< of bound_vertices
+    DeviceArray<float> start_errors;                                ///< of measure_step
     DeviceArray<float> ordered_rest_areas, ordered_regularization;  ///< what order_triangle_values makes
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
 

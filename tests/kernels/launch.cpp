@@ -74,7 +74,7 @@ void set_parameters(Arrays& a, const Build& build, const apsl_parameter_block& b
 
 void predict_positions(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "predict_positions.cl", "predict_positions");
-    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.predicted,
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.predicted, a.motion,
                   a.caller_positions, cl_ulong{a.position_placement.offset}, a.caller_velocities,
                   cl_ulong{a.velocity_placement.offset}, a.inverse_masses, cl_ulong{a.array_offset});
     run(k, a.groups, build, a.cloth_count());
@@ -98,13 +98,21 @@ void order_triangle_values(Arrays& a, const Build& build) {
 void assemble_gradients(Arrays& a, const Build& build, int sub_step) {
     const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "assemble_gradients");
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients, a.residual,
-                  a.damped_diagonal, a.ordered_rest_areas, a.ordered_regularization, cl_int{sub_step});
+                  a.damped_diagonal, a.ordered_rest_areas, build.chebyshev ? a.vertex_bounds : a.ordered_regularization,
+                  a.start_errors, cl_int{sub_step});
     run(k, a.groups, build, a.cloth_count());
 }
 
 void measure_area_change(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "measure_area_change.cl", "measure_area_change");
-    set_arguments(k, 0, a.cloths, a.parameters, a.partials, a.triangles, a.predicted, a.ordered_rest_areas);
+    set_arguments(k, 0, a.cloths, a.parameters, a.partials, a.triangles, a.predicted, a.motion, a.ordered_rest_areas);
+    run(k, a.groups, build, a.cloth_count());
+}
+
+void measure_step(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "measure_area_change.cl", "measure_step");
+    set_arguments(k, 0, a.cloths, a.parameters, a.partials, a.triangles, a.predicted, a.motion, a.ordered_rest_areas,
+                  a.start_errors);
     run(k, a.groups, build, a.cloth_count());
 }
 
@@ -117,8 +125,7 @@ void begin_call(Arrays& a, const Build& build) {
 void start_walk(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "start_walk.cl", "start_walk");
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.vertex_order, a.predicted, a.motion, a.correction,
-                  a.caller_positions, cl_ulong{a.position_placement.offset}, a.caller_velocities,
-                  cl_ulong{a.velocity_placement.offset});
+                  a.caller_velocities, cl_ulong{a.velocity_placement.offset});
     run(k, a.groups, build, a.cloth_count());
 }
 
@@ -184,14 +191,8 @@ void cg_update(Arrays& a, const Build& build, int iteration) {
 
 void bound_vertices(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "bound_matrix.cl", "bound_vertices");
-    set_arguments(k, 0, a.cloths, a.states, a.corner_offsets, a.corners, a.gradients, a.damped_diagonal,
-                  a.vertex_bound);
-    run(k, a.groups, build, a.cloth_count());
-}
-
-void bound_triangles(Arrays& a, const Build& build) {
-    const host::Kernel& k = kernel(a, build, "bound_matrix.cl", "bound_triangles");
-    set_arguments(k, 0, a.cloths, a.states, a.triangles, a.damped_diagonal, a.vertex_bound, a.ordered_regularization);
+    set_arguments(k, 0, a.cloths, a.parameters, a.states, a.corner_offsets, a.corners, a.gradients, a.predicted,
+                  a.motion, a.vertex_bounds);
     run(k, a.groups, build, a.cloth_count());
 }
 
@@ -231,7 +232,7 @@ void filter_in_one_group(Arrays& a, const Build& build) {
     set_arguments(k, 0, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.triangle_order, a.triangles,
                   a.patches, a.patch_vertices, a.local_triangles, a.corner_offsets, a.corners, a.predicted, a.motion,
                   a.correction, a.gradients, a.residual, a.damped_diagonal, a.product, a.direction, a.direction_product,
-                  a.pressure, a.ordered_rest_areas, a.ordered_regularization, a.caller_positions,
+                  a.pressure, a.ordered_rest_areas, a.ordered_regularization, a.start_errors, a.caller_positions,
                   cl_ulong{a.position_placement.offset}, a.caller_velocities, cl_ulong{a.velocity_placement.offset},
                   a.inverse_masses, cl_ulong{a.array_offset}, a.rest_areas, cl_ulong{a.array_offset},
                   build.alpha_per_triangle ? a.regularization : a.rest_areas, cl_ulong{a.array_offset},

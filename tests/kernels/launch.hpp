@@ -34,6 +34,7 @@ void rest_areas(Arrays& arrays, const Build& build);
 void order_triangle_values(Arrays& arrays, const Build& build);
 void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
 void measure_area_change(Arrays& arrays, const Build& build);
+void measure_step(Arrays& arrays, const Build& build);
 void begin_call(Arrays& arrays, const Build& build);
 void start_walk(Arrays& arrays, const Build& build);
 void begin_solve(Arrays& arrays, const Build& build, int sub_step);
@@ -45,7 +46,6 @@ void measure_guess(Arrays& arrays, const Build& build);
 void start_from_guess(Arrays& arrays, const Build& build);
 void cg_update(Arrays& arrays, const Build& build, int iteration);
 void bound_vertices(Arrays& arrays, const Build& build);
-void bound_triangles(Arrays& arrays, const Build& build);
 /// Launch `launch` of `launched`; the last writes the pressure, those before it take turns with the direction.
 void chebyshev_step(Arrays& arrays, const Build& build, int sub_step, int launched, int launch);
 /// `iterations`: those done before.

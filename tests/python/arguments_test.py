@@ -4,11 +4,12 @@
 import pickle
 import sys
 import unittest
+from decimal import Decimal
 
 import numpy as np
 
 import apsl
-from cloth import CORNER, ONE_TRIANGLE, Grid, limiter
+from cloth import CORNER, ONE_TRIANGLE, Grid, device, limiter
 
 
 class Taken(unittest.TestCase):
@@ -43,6 +44,34 @@ class Taken(unittest.TestCase):
         np.testing.assert_array_equal(first, kept)
         self.assertEqual((first.dtype, first.shape), (np.float32, cloth.positions.shape))
         self.assertTrue(first.flags["C_CONTIGUOUS"] and first.flags["WRITEABLE"])
+
+    def test_numpy_scalars_are_what_they_hold(self):
+        arguments = CORNER, 64 * CORNER, [1, 1, 1], [0.5]
+        made = limiter(ONE_TRIANGLE, 3)
+        for named in [
+            {"enabled": True}, {"enabled": False}, {"sub_steps": 3}, {"max_iterations": 7}, {"adaptive_iterations": 2},
+            {"time_step": 0.25}, {"time_step": 1}, {"regularization": 2}, {"regularization": 1.5}, {"tolerance": 0.5},
+            {"target_area_change": 0.25}, {"first_regularization": 4.0}, {"stepping": "whole_step"},
+        ]:
+            (name, plain), = named.items()
+            types = {bool: [np.bool_], str: [np.str_],
+                     int: [np.int8, np.uint8, np.int16, np.uint32, np.int64, np.uint64, np.intp],
+                     float: [np.float16, np.float32, np.float64, np.longdouble]}[type(plain)]
+            expected, stats = made.limit(*arguments, **named)
+            for value in [kind(plain) for kind in types] + [np.array(plain)]:
+                with self.subTest(name, value=repr(value), type=type(value)):
+                    got, got_stats = made.limit(*arguments, **{name: value})
+                    self.assertEqual(got.tobytes(), expected.tobytes())
+                    self.assertEqual(got_stats, stats)
+
+    def test_numpy_scalars_as_options(self):
+        options = {"work_group_size": np.uint16(1), "regularization_per_triangle": np.True_,
+                   "kept_pressures": np.int64(2), "bound_period": np.array(3), "matrix": np.str_("consistent")}
+        made = limiter(ONE_TRIANGLE, np.uint8(3), **options)
+        for name, value in options.items():
+            self.assertEqual(made.options[name], value)
+        number = np.int64(device().number)
+        self.assertGreater(apsl.StrainLimiter(ONE_TRIANGLE, np.array(3), number).scratch_bytes, 0)
 
     def test_every_parameter_is_taken_at_its_default(self):
         cloth = Grid(6)
@@ -91,6 +120,24 @@ class Refused(unittest.TestCase):
             ({"sub_steps": True}, "sub_steps: got True, expected an integer"),
             ({"sub_steps": 2**31}, "sub_steps: got 2147483648, expected an integer"),
             ({"sub_steps": -1}, "sub_steps"),
+            ({"sub_steps": np.True_}, "sub_steps: got True, expected an integer"),
+            ({"sub_steps": np.float32(3)}, "sub_steps: got 3.0, expected an integer"),
+            ({"sub_steps": np.float32(3.5)}, "sub_steps: got 3.5, expected an integer"),
+            ({"sub_steps": np.array(3.5)}, "sub_steps: got array(3.5), expected an integer"),
+            ({"sub_steps": np.array([3])}, "sub_steps: got array([3]), expected an integer"),
+            ({"sub_steps": np.int64(2**31)}, "sub_steps: got 2147483648, expected an integer"),
+            ({"sub_steps": Decimal("3.5")}, "sub_steps: got Decimal('3.5'), expected an integer"),
+            ({"sub_steps": None}, "sub_steps: got None, expected an integer"),
+            ({"time_step": np.True_}, "time_step: got True, expected a number"),
+            ({"time_step": np.complex64(1)}, "time_step: got (1+0j), expected a number"),
+            ({"time_step": np.array([0.1])}, "time_step: got array([0.1]), expected a number"),
+            ({"time_step": np.float64("nan")}, "time_step is nan"),
+            ({"time_step": 1e300}, "time_step is inf"),
+            ({"enabled": 1}, "enabled: got 1, expected True or False"),
+            ({"enabled": np.int64(1)}, "enabled: got 1, expected True or False"),
+            ({"enabled": None}, "enabled: got None, expected True or False"),
+            ({"enabled": np.array([True])}, "enabled: got array([ True]), expected True or False"),
+            ({"stepping": np.int32(1)}, "stepping: got 1, expected one of"),
             ({"time_step": "1"}, "time_step: got '1', expected a number"),
             ({"time_step": 0}, "time_step"),
             ({"regularization": 0.9}, "regularization"),

@@ -60,9 +60,25 @@ TEST_CASE("set: that leads nowhere says where it stopped") {
         {"a..b=1", "--set a..b=1: expected path=value"},
         {"a.b=1", "--set a.b=1: there is no \"b\" in 3"},
         {"list[5]=1", "--set list[5]=1: there is no \"5\" in [1]"},
+        {"a={\"b\": [{\"c\": 1, \"c\": 2}]}",
+         "--set a={\"b\": [{\"c\": 1, \"c\": 2}]}: b[0].c: the same key comes twice"},
+        {"a=" + std::string(65, '[') + std::string(65, ']'), "--set a=" + std::string(65, '[')},
+        {"a=\xff", "--set a=\xff: expected text in UTF-8"},
+        {"\xff=1", "--set \xff=1: expected text in UTF-8"},
+        {"x" + std::string(100000, '.') + "=1", "--set x"},
         {"list.x=1", "--set list.x=1: there is no \"x\" in [1]"},
     }));
     nlohmann::json document = nlohmann::json::parse(R"({"a": 3, "list": [1]})");
     CHECK_THAT(input_error_of([&, given = assignment] { override_scene(document, given); }),
                Catch::StartsWith(message));
+}
+
+TEST_CASE("set: a path of any length is an error or a change, no end of the program") {
+    std::string path = "a";
+    for (int k = 1; k < 64; ++k) path += ".a";
+    nlohmann::json document = nlohmann::json::object();
+    override_scene(document, path + "=1");
+    for (int k = 64; k < 100000; ++k) path += ".a";
+    CHECK(input_error_of([&] { override_scene(document, path + "=1"); }) ==
+          "--set a...: a path of 100000 keys, expected at most 64");
 }

@@ -63,9 +63,9 @@ TEST_CASE("wrong meshes are refused in one line") {
     folder.write("mesh.obj", kCorners + "v nan 0 0\nf 1 2 3\n");
     check_refused("run " + scene, "mesh.obj:4: expected three finite coordinates");
     folder.write("mesh.obj", kCorners + "f 1 2 9\n");
-    check_refused("run " + scene, "mesh.obj: face 0: vertex 8 is out of range");
+    check_refused("run " + scene, "mesh.obj:4: vertex 9 is out of range");
     folder.write("mesh.obj", kCorners + "v 2 0 0\nf 1 2 4\n");
-    check_refused("run " + scene, "mesh.obj: triangle 0 has rest area 0");
+    check_refused("run " + scene, "mesh.obj:5: a face without an area");
     const std::string ply = folder.write("nan.ply", ply_text(3, 1, "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"));
     check_refused("run " + scene + " --set mesh.file=" + ply, "nan.ply: vertex 1: expected three finite coordinates");
 }

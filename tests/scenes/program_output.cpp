@@ -242,6 +242,8 @@ TEST_CASE("solves that do not converge are a status and a piece of advice") {
     CHECK(run.exit_code == 0);
     CHECK_THAT(run.errors, Catch::Contains("warning: strain limiting did not converge in 3 of 3 frames; raise"));
     CHECK(read_json(report_file)["summary"]["status"] == "not_converged");
+    CHECK_THAT(read_json(report_file)["warnings"].at(0).get<std::string>(),
+               Catch::StartsWith("strain limiting did not converge in 3 of 3 frames"));
 }
 
 TEST_CASE("the printed matrix below 2 is warned of, the consistent one is not") {
@@ -256,6 +258,44 @@ TEST_CASE("stand-alone springs that had to be added are warned of") {
     CHECK_THAT(run_apsl(command + "alternating").errors,
                Catch::StartsWith("warning: ") && Catch::Contains("lattices that only areas join"));
     CHECK(run_apsl(command + "random").errors.empty());
+}
+
+TEST_CASE("a scene whose name is no UTF-8 leaves its report all the same") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("sc\xe9ne.json", R"({"mesh": {"grid": {"vertices": [5, 5]}}, "frames": 1})");
+    const std::string report_file = (folder.path() / "report.json").string();
+    const ProgramRun run = run_apsl("run " + scene + " --report " + report_file);
+    CHECK(run.exit_code == 0);
+    CHECK_THAT(run.output, Catch::Contains("status                 ok"));
+    CHECK_THAT(read_json(report_file)["scene"].get<std::string>(), Catch::EndsWith("/sc\xef\xbf\xbdne.json"));
+}
+
+TEST_CASE("a mesh in pieces that lie side by side is warned of on the screen and in the report, until it is welded") {
+    const TemporaryFolder folder;
+    folder.write("soup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n");
+    const std::string scene =
+        folder.write("soup.json", R"({"mesh": {"file": "soup.obj"}, "frames": 1, "pins": [{"vertices": [0]}]})");
+    const std::string report_file = (folder.path() / "report.json").string();
+    const std::string warning = "in the place of another: 2; the cloth is in 2 pieces, 1 of them without a pin";
+    const ProgramRun validated = run_apsl("validate " + scene);
+    CHECK_THAT(validated.output, Catch::Contains("pieces     2, 1 of them without a pin"));
+    CHECK_THAT(validated.errors, Catch::StartsWith("warning: ") && Catch::Contains(warning));
+    const ProgramRun run = run_apsl("run " + scene + " --report " + report_file);
+    CHECK(run.exit_code == 0);
+    CHECK_THAT(run.output, Catch::Contains("pieces                 2, 1 of them without a pin"));
+    CHECK_THAT(run.errors, Catch::Contains("warning: ") && Catch::Contains(warning));
+    nlohmann::json report = read_json(report_file);
+    CHECK(report["pieces"] == nlohmann::json{{"count", 2}, {"without_pin", 1}});
+    REQUIRE(report["warnings"].size() == 1);
+    CHECK_THAT(report["warnings"][0].get<std::string>(), Catch::Contains(warning));
+
+    const ProgramRun welded = run_apsl("run " + scene + " --set mesh.weld=1e-5 --report " + report_file);
+    CHECK_THAT(welded.output, !Catch::Contains("pieces"));
+    CHECK_THAT(welded.errors, !Catch::Contains("warning"));
+    report = read_json(report_file);
+    CHECK(report["pieces"] == nlohmann::json{{"count", 1}, {"without_pin", 0}});
+    CHECK(report["warnings"].empty());
+    CHECK(report["vertices"] == 4);
 }
 
 TEST_CASE("several steps a frame are the same motion as so many frames") {

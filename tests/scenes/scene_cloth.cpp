@@ -79,6 +79,12 @@ TEST_CASE("masses are multiplied, pinned vertices stay pinned, the rest keeps it
     CHECK(heavy.inverse_masses[0] == 0.0);
     CHECK(input_error_of([&] { make_scene_cloth(parse(grid + R"(, "masses": [{"vertices": [15]}]})")); }) ==
           "scene.json: masses[0].vertices[0]: vertex 15 is out of range, expected 0 to 14");
+    for (const std::string factor : {"1e-300", "1e300"}) {
+        const std::string masses =
+            R"([{"vertices": [7], "factor": )" + factor + R"(}, {"box": {}, "factor": )" + factor + "}]";
+        CHECK_THAT(input_error_of([&] { make_scene_cloth(parse(grid + ", \"masses\": " + masses + "}")); }),
+                   Catch::StartsWith("scene.json: masses[1].factor: leaves vertex 7 without a mass"));
+    }
 }
 
 TEST_CASE("a cloth starts scaled about its middle, or shaken, and its rest stays") {
@@ -124,8 +130,67 @@ TEST_CASE("flaws of a mesh are warned of, with what to do") {
     CHECK_THAT(cloth_of_file(fin).warnings[0], Catch::StartsWith(fin + ": edges with more than two triangles: 1;"));
 }
 
+TEST_CASE("triangles that lie side by side and share no vertex are warned of, with a weld that joins them") {
+    const TemporaryFolder folder;
+    const std::string soup = folder.write(
+        "soup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 9 9 9\nv 9 9 9\nf 1 2 3\nf 4 5 6\n");
+    Scene scene;
+    scene.mesh = MeshFile{.file = soup, .height = {}};
+    scene.pins = {Pin{SelectedVertices{{4}}, {}}};
+    const SceneCloth apart = make_scene_cloth(scene);
+    CHECK(apart.pieces.count == 2);
+    CHECK(apart.pieces.without_pin == 1);
+    REQUIRE(apart.warnings.size() == 2);  // the other is of the vertices in no triangle
+    CHECK(apart.warnings[1] == soup +
+                                   ": vertices in the place of another: 2; the cloth is in 2 pieces, 1 of them without "
+                                   "a pin, and comes apart there; to join them, write \"weld\": 1e-05 (m) beside "
+                                   "\"file\" in mesh");
+    scene.mesh = MeshFile{.file = soup, .height = {}, .weld = 1e-5};
+    const SceneCloth whole = make_scene_cloth(scene);
+    CHECK(whole.pieces.count == 1);
+    CHECK(whole.warnings.size() == 1);
+    // The pin means vertex 4 of the file, which is the fourth that is left.
+    CHECK(whole.pins[0].vertices == std::vector<std::uint32_t>{3});
+    scene.pins = {Pin{SelectedVertices{{8}}, {}}};
+    CHECK_THAT(input_error_of([&] { make_scene_cloth(scene); }), Catch::Contains("out of range, expected 0 to 7"));
+}
+
+TEST_CASE("pieces that are meant to be apart are counted, not warned of; an open seam within one piece is warned of") {
+    const TemporaryFolder folder;
+    const std::string layers = folder.write(
+        "layers.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0.001\nv 1 0 0.001\nv 0 1 0.001\nf 1 2 3\nf 4 5 6\n");
+    CHECK(cloth_of_file(layers).pieces.count == 2);
+    CHECK(cloth_of_file(layers).pieces.without_pin == 2);
+    CHECK(cloth_of_file(layers).warnings.empty());
+    const std::string seam =
+        folder.write("seam.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nv 0 0 0\nf 1 2 3\nf 3 2 4\nf 3 4 5\n");
+    CHECK(cloth_of_file(seam).pieces.count == 1);
+    REQUIRE(cloth_of_file(seam).warnings.size() == 1);
+    CHECK_THAT(cloth_of_file(seam).warnings[0],
+               Catch::Contains("in the place of another: 1; the cloth is in 1 piece and"));
+}
+
+TEST_CASE("a cloth that starts inside of a collider is warned of") {
+    const std::string grid =
+        R"({"mesh": {"grid": {"vertices": [5, 3], "size": [4, 2]}}, "pins": [{"vertices": [7]}], )";
+    const auto cloth = [&](const std::string& collider) {
+        return make_scene_cloth(parse(grid + "\"colliders\": [" + collider + "]}"));
+    };
+    CHECK(cloth(R"({"plane": {"point": [0, 0.5, 0]}})").warnings ==
+          std::vector<std::string>{
+              "scene.json: colliders[0]: vertices that start inside: 14, by up to 0.5 m; they are led "
+              "out slowly, move the cloth or the collider"});
+    CHECK_THAT(
+        cloth(R"({"plane": {"point": [0, -1, 0]}}, {"sphere": {"center": [1, 0, 0], "radius": 0.25}})").warnings.at(0),
+        Catch::StartsWith("scene.json: colliders[1]: vertices that start inside: 1, by up to 0.25 m"));
+    CHECK(cloth(R"({"plane": {"point": [0, 0, 0]}})").warnings.empty());
+    CHECK(cloth(R"({"sphere": {"center": [0, 0, 0], "radius": 0.25}})").warnings.empty());  // a pinned vertex alone
+}
+
 TEST_CASE("a triangle of rest area 0 is an error") {
     const TemporaryFolder folder;
     const std::string flat = folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
-    CHECK(input_error_of([&] { cloth_of_file(flat); }) == flat + ": triangle 1 has rest area 0, expected an area > 0");
+    CHECK_THAT(input_error_of([&] { cloth_of_file(flat); }), Catch::StartsWith(flat + ":6: a face without an area"));
+    CHECK(input_error_of([] { make_scene_cloth(parse(R"({"mesh": {"grid": {"size": [1e-200, 1e-200]}}})")); }) ==
+          "scene.json: mesh: triangle 0 has rest area 0, expected an area > 0");
 }

@@ -47,6 +47,7 @@ FULL = {
 TUBE = {"mesh": {"tube": {"radius": [1, 1], "height": 1, "segments": [8, 4], "diagonals": "random", "jitter": 0.1}},
         "integrator": {"stand_alone": {"bend_stiffness": 1, "damping": 1}}}
 NONE = {"mesh": {"grid": {}}, "integrator": {"none": {}}}
+FILE = {"mesh": {"file": "mesh.obj", "height": 1, "weld": 0.001}}
 
 # What neither may accept, as changes of FULL: where, and the value there.
 BAD_VALUES = [
@@ -55,6 +56,9 @@ BAD_VALUES = [
     (("mesh", "grid", "diagonals"), "zigzag"), (("mesh", "grid", "jitter"), 1), (("mesh", "grid", "plane"), 3),
     (("density",), -1), (("density",), "heavy"), (("density",), None), (("gravity",), [0, 1]), (("time_step",), 0),
     (("frames",), 0), (("frames",), 1.5), (("steps_per_frame",), 0), (("pins",), {}), (("pins", 0, "vertices"), [-1]),
+    (("pins", 0, "vertices"), []), (("pins", 1, "corners"), []), (("masses", 0, "vertices"), []),
+    (("mesh",), {"grid": {}, "weld": 1}), (("mesh",), {"file": "x.obj", "weld": -1}), (("mesh",), {"file": ""}),
+    (("strain_limiting", "regularization"), []),
     (("pins", 1, "corners"), ["min_w"]), (("pins", 2), {}), (("pins", 0, "motion"), {}),
     (("pins", 0, "motion", "start"), -1), (("integrator",), {}), (("integrator",), {"none": {}, "stand_alone": {}}),
     (("integrator", "implicit_springs", "damping"), -1), (("strain_limiting", "regularization"), 0.9),
@@ -105,6 +109,7 @@ class SceneSchema(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "scene.json"
             file.write_text(json.dumps(document))
+            (Path(folder) / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
             return subprocess.run([program, "validate", file], capture_output=True, text=True)
 
     def test_schema_is_one(self):
@@ -118,7 +123,7 @@ class SceneSchema(unittest.TestCase):
                 self.assertEqual([error.message for error in validator.iter_errors(json.loads(scene.read_text()))], [])
 
     def test_full_documents_are_accepted_by_both(self):
-        for document in (FULL, TUBE, NONE):
+        for document in (FULL, TUBE, NONE, FILE):
             self.assertEqual([error.message for error in validator.iter_errors(document)], [])
             run = self.run_validate(document)
             self.assertEqual(run.returncode, 0, run.stderr)
@@ -134,7 +139,7 @@ class SceneSchema(unittest.TestCase):
 
     def test_both_know_the_same_keys_in_every_object(self):
         seen = set()
-        for document in (FULL, TUBE, NONE):
+        for document in (FULL, TUBE, NONE, FILE):
             for path in objects(document):
                 with self.subTest(path=path):
                     extended = changed(document, path + ("zebra",), 1)
@@ -146,7 +151,7 @@ class SceneSchema(unittest.TestCase):
                     known_to_program = set((match["keys"] or "").split(", ")) - {""}
                     self.assertEqual(known_to_program, known_to_schema(extended, path))
                     seen |= {(path, key) for key in known_to_program}
-        # Every key of an object in FULL and TUBE is one that both know, so no key is left untried.
+        # Every key of an object in these is one that both know, so no key is left untried.
         self.assertGreater(len(seen), 60)
 
     def test_defaults_in_the_schema_are_legal(self):

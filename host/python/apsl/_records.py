@@ -44,13 +44,15 @@ class Stats:
     sub_steps: int  # solves done
     cg_iterations: int  # over all of them
     residual: float  # greatest relative residual at the end of a solve
-    max_area_change: float  # max |A − A⁰| / A⁰ of what is left behind
+    max_area_change: float  # max |A − A⁰| / A⁰ of the state that stands
     rms_area_change: float  # weighted with A⁰
     initial_max_area_change: float  # both at x + Δt v
     initial_rms_area_change: float
     status: Literal["ok", "not_converged", "worsened", "diverged", "off"]
-    offender: Literal["none", "vertex", "triangle"]  # other than none only where status is diverged
+    offender: Literal["none", "vertex", "triangle"]  # other than none only where status is diverged or worsened
     offender_index: int  # the first one
+    raised_vertices: int  # that weighed more than given in the last sub-step
+    greatest_mass_ratio: float  # their greatest mass over the one given; 1 where none was raised
 
 
 @dataclass(frozen=True)

@@ -111,6 +111,70 @@ TEST_CASE("colliders: what is outside and what is pinned keeps its velocity, bit
     CHECK(cloth.velocities == before);
 }
 
+TEST_CASE("colliders: what starts inside is led out, and keeps no speed from it") {
+    const Contact contact{.friction = GENERATE(0.0, 0.4), .thickness = 0.01};
+    const double depth = GENERATE(0.02, 0.19);
+    // Vertices at all depths, in a plane that cuts the collider; the last ones start outside.
+    const Collider collider = GENERATE_COPY(
+        Collider(Sphere{.center = {0.0, depth - 0.19, 0.0}, .radius = 0.18, .contact = contact}),
+        Collider(Plane{.point = {0.0, depth - 0.01, 0.0}, .normal = {0.1, 2.0, 0.0}, .contact = contact}),
+        Collider(Capsule{
+            .a = {0.0, depth - 0.19, -1.0}, .b = {0.0, depth - 0.19, 1.0}, .radius = 0.18, .contact = contact}));
+    ClothState cloth = sample_cloth(test::grid(9, 9, 0.5, 0.5, test::Diagonals::alternating), {40});
+    const StartInside before = start_inside(cloth, collider);
+    CHECK(before.vertices > 0);
+    CHECK(before.vertices <= 80);  // the pinned one in the middle is not counted
+    const std::vector<double> pinned(cloth.positions.begin() + 120, cloth.positions.begin() + 123);
+    double fastest = 0.0;
+    double deepest = before.depth;
+    for (int step = 0; step < 120; ++step) {
+        resolve_collisions(cloth, std::array{collider}, time_step, true);
+        advance_positions(cloth, time_step);
+        for (const double velocity : cloth.velocities) fastest = std::max(fastest, std::abs(velocity));
+        const StartInside now = start_inside(cloth, collider);
+        CHECK(now.depth <= deepest);
+        deepest = now.depth;
+    }
+    CHECK(deepest == 0.0);
+    CHECK(fastest < 1e-4 / time_step);  // no more than of the last part; at once it would be depth / Δt, 11 m/s
+    CHECK(std::vector<double>(cloth.positions.begin() + 120, cloth.positions.begin() + 123) == pinned);
+}
+
+TEST_CASE("colliders: what starts inside and moves inwards comes no deeper, under gravity too") {
+    const Collider floor =
+        Plane{.point = {0.0, 0.1, 0.0}, .normal = {0, 1, 0}, .contact = {.friction = 0.3, .thickness = 0.0}};
+    ClothState cloth = sample_cloth(test::grid(3, 3, 0.2, 0.2, test::Diagonals::uniform));
+    for (std::size_t vertex = 0; vertex < 9; ++vertex) cloth.velocities[3 * vertex + 1] = -5.0;
+    ImplicitSprings free_fall(cloth, {}, 0.0);
+    double depth = 0.1;
+    for (int step = 0; step < 120; ++step) {
+        free_fall.advance_velocities(cloth, {0.0, -9.81, 0.0}, time_step);
+        resolve_collisions(cloth, std::array{floor}, time_step, true);
+        advance_positions(cloth, time_step);
+        const double now = -distance(floor, place(cloth, 0));
+        CHECK(now <= depth);
+        CHECK(now > -1e-9);  // and is not thrown
+        depth = now;
+    }
+    CHECK(depth == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("colliders: leading out changes no bit where nothing starts inside") {
+    const std::vector<Collider> colliders{Sphere{.center = {0, -0.31, 0}, .radius = 0.3, .contact = {.friction = 0.3}},
+                                          Plane{.point = {0, -0.2, 0}, .normal = {0, 1, 0}, .contact = {}}};
+    const auto dropped = [&](bool lead_out) {
+        ClothState cloth = sample_cloth(test::grid(9, 9, 0.5, 0.5, test::Diagonals::alternating));
+        ImplicitSprings integrator(cloth, stretch_springs(*cloth.topology, cloth.rest_positions, 20.0), 0.5);
+        for (int step = 0; step < 30; ++step) {
+            integrator.advance_velocities(cloth, {0.0, -9.81, 0.0}, time_step);
+            resolve_collisions(cloth, colliders, time_step, lead_out);
+            advance_positions(cloth, time_step);
+        }
+        return cloth.positions;
+    };
+    CHECK(dropped(true) == dropped(false));
+}
+
 TEST_CASE("colliders: fields out of range are named") {
     const double not_a_number = std::numeric_limits<double>::quiet_NaN();
     CHECK_THROWS_WITH(validate(Sphere{.center = {}, .radius = 0.0, .contact = {}}), Catch::Contains("radius"));

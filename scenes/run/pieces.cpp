@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "run/pieces.hpp"
+
+#include "pipeline/geometry.hpp"
+#include "run/weld.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <numeric>
+#include <vector>
+
+namespace apsl::scenes {
+namespace {
+
+// Of the cloth's extent. Layers of cloth lie farther apart, and what is the same number in a file lies nearer.
+constexpr double kOnePlace = 1e-6;
+
+bool has_triangles(const Topology& topology, std::size_t vertex) {
+    const auto offsets = topology.corner_offsets();
+    return offsets[vertex] != offsets[vertex + 1];
+}
+
+// Positions of the vertices that have triangles.
+std::vector<double> places(const ClothState& cloth) {
+    std::vector<double> positions;
+    positions.reserve(cloth.rest_positions.size());
+    for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v) {
+        if (!has_triangles(*cloth.topology, v)) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis) positions.push_back(cloth.rest_positions[3 * v + axis]);
+    }
+    return positions;
+}
+
+double extent(std::span<const double> positions) {
+    Eigen::Vector3d low = vector_at(positions, 0);
+    Eigen::Vector3d high = low;
+    for (std::size_t v = 0; v < positions.size() / 3; ++v) {
+        low = low.cwiseMin(vector_at(positions, v));
+        high = high.cwiseMax(vector_at(positions, v));
+    }
+    return (high - low).stableNorm();
+}
+
+}  // namespace
+
+Pieces pieces_of(const ClothState& cloth) {
+    const Topology& topology = *cloth.topology;
+    std::vector<std::uint32_t> parent(topology.vertex_count());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](std::uint32_t v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (const Triangle& triangle : topology.triangles())
+        for (const std::uint32_t vertex : triangle) parent[root(vertex)] = root(triangle[0]);
+    std::vector<bool> pinned(topology.vertex_count(), false);
+    for (std::uint32_t v = 0; v < topology.vertex_count(); ++v)
+        if (cloth.inverse_masses[v] == 0.0) pinned[root(v)] = true;
+    Pieces pieces;
+    for (std::uint32_t v = 0; v < topology.vertex_count(); ++v) {
+        if (!has_triangles(topology, v) || root(v) != v) continue;
+        ++pieces.count;
+        if (!pinned[v]) ++pieces.without_pin;
+    }
+    return pieces;
+}
+
+std::optional<std::string> coincidence_warning(const ClothState& cloth, const Pieces& pieces) {
+    const std::vector<double> positions = places(cloth);
+    const double distance = kOnePlace * extent(positions);
+    if (!(distance > 0.0) || !std::isfinite(distance)) return {};
+    const std::vector<std::uint32_t> first = first_within(positions, distance);
+    std::size_t coincident = 0;
+    for (std::size_t v = 0; v < first.size(); ++v) coincident += first[v] != v;
+    if (coincident == 0) return {};
+    char suggestion[32];  // the next power of ten
+    std::snprintf(suggestion, sizeof suggestion, "%.0e", std::pow(10.0, std::ceil(std::log10(distance))));
+    std::string text = "vertices in the place of another: " + std::to_string(coincident) + "; the cloth is in " +
+                       std::to_string(pieces.count) + (pieces.count == 1 ? " piece" : " pieces, ");
+    if (pieces.count > 1) text += std::to_string(pieces.without_pin) + " of them without a pin,";
+    return text + " and comes apart there; to join them, write \"weld\": " + suggestion +
+           " (m) beside \"file\" in mesh";
+}
+
+}  // namespace apsl::scenes
