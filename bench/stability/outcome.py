@@ -8,8 +8,8 @@ INACCURATE = 0.10       # greatest area change
 DIVERGED = 10.0         # greatest area change
 BLOWN_UP = 10.0         # times the kinetic, spring and gravity energy that the unlimited cloth ends with
 ROUNDING = 1e-3         # of area change: no more than this above the unlimited cloth's is not worse
-ENERGY_SHARE = 0.01     # of the energy in the scene: a gain of less is none, and so is one below
-ENERGY_FLOOR = 1e-4     # J, what lifts the base cloth by 0.05 mm
+ENERGY_SHARE = 0.10     # of the energy in the scene: corrections that stretch stiff springs load them by less
+ENERGY_FLOOR = 1e-4     # J, what lifts the base cloth by 0.05 mm: less is no gain either
 CHANCE = 2.0            # times what contact gives to the unlimited cloth: the motions are not the same ones
 
 HELD, INACCURATE_ALONE, WORSE, GAINED_ENERGY, DIVERGED_RUN, TIMED_OUT = "hiwgdt"
