@@ -6,7 +6,6 @@
 #include "run/input_error.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
-#include "run/scene_springs.hpp"
 #include "run/simulation.hpp"
 
 #include <algorithm>
@@ -66,13 +65,14 @@ void measure_cloth(const scenes::ClothState& cloth, int frame, const RunConditio
 std::optional<MeasuredRun> measure_run(const PlannedRun& run, const RunConditions& conditions) {
     const scenes::Scene scene = scenes::parse_scene(run.prepared.document, run.scene->file);
     scenes::SceneCloth cloth = scenes::make_scene_cloth(scene);
-    const std::vector<scenes::Spring> springs = scenes::make_scene_springs(scene, cloth.state).springs;
     scenes::FilterStage filter = make_filter(run, conditions, scene, cloth.state);
     MeasuredRun result;
     result.device = device_name(filter);
     result.vertices = cloth.state.topology->vertex_count();
     result.triangles = cloth.state.topology->triangle_count();
     scenes::Simulation simulation(scene, std::move(cloth), std::move(filter), false);
+
+    result.start_energy = simulation.energy();
 
     const auto start = std::chrono::steady_clock::now();
     const auto time_left = [&] {
@@ -94,7 +94,6 @@ std::optional<MeasuredRun> measure_run(const PlannedRun& run, const RunCondition
         if (conditions.show) conditions.show(result.frames.back());
         result.timed_out = !result.breakdown && frame + 1 < scene.frames && !time_left();
     }
-    result.energy = energy(simulation.cloth(), springs, scene.gravity);
     return result;
 }
 

@@ -2,7 +2,6 @@
 #include "compare/measures.hpp"
 
 #include "pipeline/geometry.hpp"
-#include "pipeline/spring_operator.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -44,21 +43,6 @@ PrincipalStretch principal_stretch(const scenes::ClothState& cloth) {
         range.min = std::min(range.min, std::sqrt(std::max(middle - half_width, 0.0)));
     }
     return range.max < range.min ? PrincipalStretch{} : range;
-}
-
-Energy energy(const scenes::ClothState& cloth, std::span<const scenes::Spring> springs,
-              const std::array<double, 3>& gravity) {
-    Energy sum;
-    const Eigen::Vector3d g(gravity[0], gravity[1], gravity[2]);
-    for (std::size_t v = 0; v < cloth.masses.size(); ++v) {
-        if (cloth.inverse_masses[v] == 0.0) continue;
-        const Eigen::Vector3d moved = vector_at(std::span<const double>(cloth.positions), v) -
-                                      vector_at(std::span<const double>(cloth.rest_positions), v);
-        sum.kinetic += 0.5 * cloth.masses[v] * vector_at(std::span<const double>(cloth.velocities), v).squaredNorm();
-        sum.gravity -= cloth.masses[v] * g.dot(moved);
-    }
-    sum.springs = scenes::spring_energy(springs, cloth.positions);
-    return sum;
 }
 
 Deviation deviation(std::span<const double> positions, std::span<const double> expected) {

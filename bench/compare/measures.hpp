@@ -2,7 +2,6 @@
 #pragma once
 
 #include "pipeline/cloth_state.hpp"
-#include "pipeline/springs.hpp"
 
 #include <array>
 #include <span>
@@ -18,15 +17,6 @@ struct PrincipalStretch {
     double max = 1.0;
 };
 PrincipalStretch principal_stretch(const scenes::ClothState& cloth);
-
-/// J. Free vertices alone, gravity counted from the rest positions.
-struct Energy {
-    double kinetic = 0.0;
-    double gravity = 0.0;
-    double springs = 0.0;
-};
-Energy energy(const scenes::ClothState& cloth, std::span<const scenes::Spring> springs,
-              const std::array<double, 3>& gravity);
 
 /// Distance of each vertex from where it should be: m.
 struct Deviation {

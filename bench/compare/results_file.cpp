@@ -6,8 +6,10 @@
 #include "run/input_error.hpp"
 #include "run/whole_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -73,6 +75,27 @@ Json deviation_json(const MeasuredRun& run, const std::optional<DeviationPlan>& 
             {"converged_max_area_change", converged_area_change},
             {"asked_frames", plan->frames},
             {"frames", frames_json(run.deviation)}};
+}
+
+// Of every frame. Five digits: a chart needs no more, and the file stays small.
+Json six_decimals(const std::vector<scenes::FrameReport>& frames, double scenes::FrameReport::* field) {
+    Json values = Json::array();
+    for (const scenes::FrameReport& frame : frames) {
+        const double value = frame.*field;
+        values.push_back(std::isfinite(value) ? Json(std::round(1e6 * value) / 1e6) : Json());
+    }
+    return values;
+}
+
+// J. NaN where a frame's is not finite, for then there is no greatest.
+double greatest_energy(const std::vector<scenes::FrameReport>& frames) {
+    double greatest = -std::numeric_limits<double>::infinity();
+    for (const scenes::FrameReport& frame : frames) {
+        const double total = frame.energy.total();
+        if (!std::isfinite(total)) return std::numeric_limits<double>::quiet_NaN();
+        greatest = std::max(greatest, total);
+    }
+    return greatest;
 }
 
 // Equal whatever the order of their keys.
@@ -169,7 +192,7 @@ bool ResultsFile::has(const PlannedRun& run, const RunConditions& conditions,
     if (found->value("status", "") == "timed_out" && found->value("run_seconds", 0.0) < conditions.run_seconds) {
         return false;
     }
-    if (conditions.keep_frames && !found->contains("frame_max_area_change")) return false;
+    if (conditions.keep_frames && !found->contains("frame_max_edge_stretch")) return false;
     if (conditions.profile && run.contender->kind == ContenderKind::ours &&
         found->value("device_seconds_per_frame", Json()).is_null()) {
         return false;
@@ -219,18 +242,13 @@ Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const 
         {"cg_iterations_per_solve", summary.cg_iterations_per_solve},
         {"deviation", deviation_json(measured, deviation,
                                      conditions.converged != nullptr ? conditions.converged->max_area_change : 0.0)},
-        {"energy",
-         {{"kinetic", measured.energy.kinetic},
-          {"gravity", measured.energy.gravity},
-          {"springs", measured.energy.springs}}}};
+        {"start_energy", scenes::to_json(measured.start_energy)},
+        {"greatest_energy", greatest_energy(measured.frames)},
+        {"energy", scenes::to_json(measured.frames.back().energy)}};
     entry["mean_displacement"] = measured.breakdown || measured.timed_out ? Json() : Json(measured.mean_displacement);
     if (conditions.keep_frames) {
-        entry["frame_max_area_change"] = Json::array();
-        // Five digits: a chart needs no more, and the file stays small.
-        for (const scenes::FrameReport& frame : measured.frames) {
-            entry["frame_max_area_change"].push_back(
-                std::isfinite(frame.max_area_change) ? Json(std::round(1e6 * frame.max_area_change) / 1e6) : Json());
-        }
+        entry["frame_max_area_change"] = six_decimals(measured.frames, &scenes::FrameReport::max_area_change);
+        entry["frame_max_edge_stretch"] = six_decimals(measured.frames, &scenes::FrameReport::max_edge_stretch);
     }
     for (Json& earlier : document_["runs"]) {
         if (&earlier != find(run.scene->name, run.contender->name, run.prepared.knobs)) continue;

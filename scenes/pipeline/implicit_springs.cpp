@@ -152,8 +152,8 @@ SpringSolve ImplicitSprings::advance_velocities(ClothState& cloth, const std::ar
     return result;
 }
 
-std::size_t ImplicitSprings::spring_count() const noexcept {
-    return implementation_->system.springs().size();
+std::span<const Spring> ImplicitSprings::springs() const noexcept {
+    return implementation_->system.springs();
 }
 
 std::size_t ImplicitSprings::scratch_bytes() const noexcept {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace apsl::scenes {
@@ -36,7 +37,7 @@ public:
     /// Positions or velocities that are not finite leave the velocities as they were: converged is false.
     SpringSolve advance_velocities(ClothState& cloth, const std::array<double, 3>& gravity, double time_step);
 
-    std::size_t spring_count() const noexcept;
+    std::span<const Spring> springs() const noexcept;
     /// Bytes held between steps.
     std::size_t scratch_bytes() const noexcept;
 

@@ -97,6 +97,7 @@ Start parse_start(SceneObject object) {
     Start start;
     start.scale = object.vector3("scale", start.scale);
     start.random = object.number("random", start.random, Range::at_least(0.0));
+    start.rest_areas = object.number("rest_areas", start.rest_areas, Range::above(0.0));
     object.refuse_other_keys();
     return start;
 }

@@ -37,6 +37,8 @@ nlohmann::ordered_json to_json(const FrameReport& frame) {
                                 {"rms_area_change", frame.rms_area_change},
                                 {"max_edge_stretch", frame.max_edge_stretch},
                                 {"min_edge_stretch", frame.min_edge_stretch},
+                                {"max_speed", frame.max_speed},
+                                {"energy", to_json(frame.energy)},
                                 {"sub_steps", frame.sub_steps},
                                 {"cg_iterations", frame.cg_iterations},
                                 {"integrator_seconds", frame.integrator_seconds},
@@ -135,6 +137,13 @@ std::string status_name(Status status) {
     return "diverged";
 }
 
+nlohmann::ordered_json to_json(const Energy& energy) {
+    return {{"kinetic", energy.kinetic},
+            {"gravity", energy.gravity},
+            {"springs", energy.springs},
+            {"total", energy.total()}};
+}
+
 nlohmann::ordered_json to_json(const RunReport& report) {
     nlohmann::ordered_json json{
         {"scene", report.scene},
@@ -148,7 +157,8 @@ nlohmann::ordered_json to_json(const RunReport& report) {
           {"lightest", report.light.lightest},
           {"share_of_median_mass", report.light.share_of_median}}},
         {"stages", report.stages},
-        {"device_bytes", report.device_bytes}};
+        {"device_bytes", report.device_bytes},
+        {"start_energy", to_json(report.start_energy)}};
     json["frames"] = nlohmann::ordered_json::array();
     for (const FrameReport& frame : report.frames) json["frames"].push_back(to_json(frame));
     json["summary"] = to_json(summarize(report.frames));

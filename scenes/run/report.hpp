@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "pipeline/energy.hpp"
 #include "pipeline/over_stretch.hpp"
 #include "run/light_vertices.hpp"
 #include "run/pieces.hpp"
@@ -35,6 +36,8 @@ struct FrameReport {
     double rms_area_change = 0.0;  ///< over triangles and the frame's steps
     double max_edge_stretch = 1.0;
     double min_edge_stretch = 1.0;
+    double max_speed = 0.0;  ///< m/s, of the free vertices at the end of the frame
+    Energy energy;           ///< at the end of the frame
     std::int64_t sub_steps = 0;
     std::int64_t cg_iterations = 0;
     double integrator_seconds = 0.0;
@@ -83,6 +86,7 @@ struct RunReport {
     LightVertices light;
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step
     std::size_t device_bytes = 0;
+    Energy start_energy;              ///< before the first step
     std::vector<FrameReport> frames;
     OverStretchReport over_stretch;
     std::optional<Breakdown> breakdown;
@@ -113,6 +117,9 @@ RunSummary summarize(const std::vector<FrameReport>& frames);
 
 /// "ok", "not_converged", "worsened" or "diverged".
 std::string status_name(Status status);
+
+/// kinetic, gravity, springs and total, J.
+nlohmann::ordered_json to_json(const Energy& energy);
 
 /// The report as README and docs describe it. Numbers that are not finite become null.
 nlohmann::ordered_json to_json(const RunReport& report);

@@ -68,6 +68,7 @@ RunReport describe(const RunOptions& options, Simulation& simulation) {
     report.vertices = simulation.cloth().topology->vertex_count();
     report.triangles = simulation.cloth().topology->triangle_count();
     report.stages = simulation.stages();
+    report.start_energy = simulation.energy();
     return report;
 }
 

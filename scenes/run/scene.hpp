@@ -53,10 +53,12 @@ struct MassFactor {
     double factor = 1.0;  ///< > 0
 };
 
-/// Where free vertices are when the first step begins; springs and areas are at rest where the mesh has them.
+/// How the cloth is when the first step begins; springs are at rest where the mesh has them, and so are areas but for
+/// `rest_areas`.
 struct Start {
     std::array<double, 3> scale{1.0, 1.0, 1.0};  ///< about the mean of the mesh's vertices: 0 collapses, −1 mirrors
     double random = 0.0;                         ///< m, ≥ 0: each is then moved by up to this along each axis
+    double rest_areas = 1.0;                     ///< > 0, times the mesh's: what the limiter is to hold; masses stay
 };
 
 /// Gravity alone moves the cloth ahead of the filter.

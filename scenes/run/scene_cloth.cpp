@@ -99,6 +99,7 @@ SceneCloth make_scene_cloth(const Scene& scene) {
         cloth.state = make_cloth_state(topology, mesh.positions, scene.density, pinned_vertices(cloth.pins));
         change_masses(scene, mesh, cloth.state);
         set_start_positions(scene.start, cloth.state);
+        for (double& area : cloth.state.rest_areas) area *= scene.start.rest_areas;
         note_topology(*topology, name, cloth.warnings);
         cloth.pieces = pieces_of(cloth.state);
         if (file != nullptr) {

@@ -164,12 +164,18 @@ void Simulation::run_step(int step, FrameReport& report) {
     if (stretch.max > kOverStretch) over_stretch_.measure(cloth_, frame_);
 }
 
+Energy Simulation::energy() const {
+    return scenes::energy(cloth_, springs_ ? springs_->springs() : std::span<const Spring>(), gravity_);
+}
+
 FrameReport Simulation::run_frame() {
     FrameReport report;
     report.frame = frame_;
     int steps = 0;
     while (steps < steps_per_frame_ && !breakdown_) run_step(steps++, report);
     report.rms_area_change = std::sqrt(report.rms_area_change / steps);
+    report.max_speed = greatest_speed(cloth_);
+    report.energy = energy();
     ++frame_;
     return report;
 }

@@ -29,6 +29,8 @@ public:
     FilterStage& filter() { return filter_; }
     /// Of the last step, |A − A⁰| / A⁰ per triangle as in FrameReport, [T]; empty without keep_area_changes.
     const std::vector<double>& area_changes() const { return area_changes_; }
+    /// Of the cloth as it is now.
+    Energy energy() const;
     /// At the ends of all steps so far.
     const OverStretch& over_stretch() const { return over_stretch_; }
     /// In the order of a step, as the report lists them.

@@ -6,17 +6,13 @@ Usage: acceptance_test.py APSL_PROGRAM PROJECT_FOLDER CASE [unittest's arguments
 CASE is one of the classes below. A case runs its scenes once and then judges reports and frames.
 """
 import json
-import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
 import numpy as np
+from acceptance_case import Case, project
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-
-program, project = (Path(argument).resolve() for argument in sys.argv[1:3])
 
 
 def read_frame(folder, number):
@@ -33,32 +29,6 @@ def areas(positions, triangles):
     """m², [T]."""
     corners = positions[triangles]
     return 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-
-
-class Case(unittest.TestCase):
-    """Runs scenes into a folder that goes with the case."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.temporary.cleanup)
-        cls.run_scenes()
-
-    @classmethod
-    def folder(cls, name):
-        return Path(cls.temporary.name) / name
-
-    @classmethod
-    def run_scene(cls, name, scene, *arguments, frames_wanted=False):
-        """The report of one run, which must end well."""
-        report = cls.folder(f"{name}.json")
-        command = [program, "run", project / "scenes" / scene, "--report", report, *arguments]
-        if frames_wanted:
-            command += ["--out", cls.folder(name)]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode != 0:
-            raise AssertionError(f"{' '.join(map(str, command))}: exit code {done.returncode}: {done.stderr}")
-        return json.loads(report.read_text())
 
 
 class Curtain(Case):

@@ -36,6 +36,7 @@ TEST_CASE("every key but mesh has a default, and what is not named is not there"
     CHECK(scene.masses.empty());
     CHECK(scene.start.scale == std::array<double, 3>{1.0, 1.0, 1.0});
     CHECK(scene.start.random == 0.0);
+    CHECK(scene.start.rest_areas == 1.0);
     CHECK(scene.gravity == std::array<double, 3>{0.0, -9.81, 0.0});
     CHECK(scene.time_step == 1.0 / 60.0);
     CHECK(scene.steps_per_frame == 1);
@@ -81,7 +82,7 @@ TEST_CASE("every value is taken from where it stands") {
                   "center": [1, 1, 1]}, "start": 0.5, "stop": 2}},
                  {"vertices": [0], "motion": {"translate": {"velocity": [0, 1, 0]}}}],
         "masses": [{"vertices": [5], "factor": 1000}, {"box": {"max": [0, 0, 0]}, "factor": 0.5}],
-        "start": {"scale": [1, 0, -1], "random": 0.25},
+        "start": {"scale": [1, 0, -1], "random": 0.25, "rest_areas": 1.5},
         "integrator": {"stand_alone": {"bend_stiffness": 50, "damping": 0}},
         "strain_limiting": {"matrix": "printed", "apply": "assembled_csr", "regularization": 2.5, "sub_steps": 3,
                             "target_area_change": 0.01, "tolerance": 0.001, "max_iterations": 9,
@@ -122,6 +123,7 @@ TEST_CASE("every value is taken from where it stands") {
     CHECK(scene.masses[1].factor == 0.5);
     CHECK(scene.start.scale == std::array<double, 3>{1, 0, -1});
     CHECK(scene.start.random == 0.25);
+    CHECK(scene.start.rest_areas == 1.5);
 
     const auto& stand_alone = std::get<StandAloneIntegrator>(scene.integrator);
     CHECK(stand_alone.bend_stiffness == 50);

@@ -83,17 +83,24 @@ TEST_CASE("a run leaves a whole report and frames that belong to it") {
         const nlohmann::json& frame = report["frames"][k];
         CHECK(contains(keys(frame),
                        {"frame", "max_area_change", "rms_area_change", "max_edge_stretch", "min_edge_stretch",
-                        "sub_steps", "cg_iterations", "filter_seconds", "step_seconds", "status"}));
+                        "max_speed", "energy", "sub_steps", "cg_iterations", "filter_seconds", "step_seconds", "status"}));
         CHECK(frame["frame"] == k);
         CHECK(frame["sub_steps"] == 10);
         CHECK(frame["status"] == "ok");
         CHECK(frame["max_area_change"] >= frame["rms_area_change"]);
         CHECK(frame["max_area_change"] > 0.0);
         CHECK(frame["step_seconds"] > frame["filter_seconds"]);
+        CHECK(frame["max_speed"] > 0.0);
+        const nlohmann::json& energy = frame["energy"];
+        CHECK(energy["gravity"] < 0.0);  // it falls from where it rested
+        CHECK(energy["total"].get<double>() ==
+              Approx(energy["kinetic"].get<double>() + energy["gravity"].get<double>() +
+                     energy["springs"].get<double>()));
         greatest = std::max(greatest, frame["max_area_change"].get<double>());
         sum += frame["max_area_change"].get<double>();
         iterations += frame["cg_iterations"].get<int>();
     }
+    CHECK(report["start_energy"]["total"] == 0.0);
     const nlohmann::json& summary = report["summary"];
     CHECK(summary["max_area_change"] == greatest);
     CHECK(summary["mean_max_area_change"].get<double>() == Approx(sum / 3.0));

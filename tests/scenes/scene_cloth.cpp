@@ -111,6 +111,11 @@ TEST_CASE("a cloth starts scaled about its middle, or shaken, and its rest stays
     CHECK(farthest > 0.2);
     CHECK(shaken.positions == start(R"({"random": 0.25})").positions);
     CHECK(start("{}").positions == start("{}").rest_positions);
+
+    const ClothState larger = start(R"({"rest_areas": 1.5})");
+    CHECK(larger.positions == larger.rest_positions);
+    CHECK(larger.rest_areas[0] == Approx(0.75));
+    CHECK(larger.masses == start("{}").masses);
 }
 
 TEST_CASE("flaws of a mesh are warned of, with what to do") {

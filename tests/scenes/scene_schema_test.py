@@ -31,7 +31,7 @@ FULL = {
     ],
     "masses": [{"vertices": [1], "factor": 10}, {"corners": ["max_x_max_y"], "factor": 2},
                {"box": {"min": [0, 0, 0], "max": [1, 1, 1]}, "factor": 0.1}],
-    "start": {"scale": [1, 0, -1], "random": 0.1},
+    "start": {"scale": [1, 0, -1], "random": 0.1, "rest_areas": 1.5},
     "gravity": [0, -9.81, 0], "time_step": 0.01, "steps_per_frame": 2, "frames": 3,
     "integrator": {"implicit_springs": {"stretch_stiffness": 1, "bend_stiffness": 1, "damping": 1}},
     "strain_limiting": {"matrix": "consistent", "apply": "matrix_free", "execution": "one_group",
@@ -68,7 +68,7 @@ BAD_VALUES = [
     (("strain_limiting", "first_regularization"), 0.5), (("strain_limiting", "kept_pressures"), -1),
     (("strain_limiting", "execution"), "serial"), (("strain_limiting", "solver"), "jacobi"), (("strain_limiting", "bound_period"), 0), (("strain_limiting", "target_area_change"), -1),
     (("masses",), {}), (("masses", 0), {"factor": 2}), (("masses", 0, "factor"), 0), (("masses", 1, "corners"), ["x"]),
-    (("start",), []), (("start", "scale"), [1, 1]), (("start", "random"), -1),
+    (("start",), []), (("start", "scale"), [1, 1]), (("start", "random"), -1), (("start", "rest_areas"), 0),
     (("colliders", 0), {}), (("colliders", 0, "sphere", "radius"), 0), (("colliders", 1, "plane", "friction"), -1),
 ]
 
