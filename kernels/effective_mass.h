@@ -11,10 +11,9 @@
 #define APSL_STIFFNESS_KEPT 0.9f
 #define APSL_GREATEST_MEAN_MASSES 10.0f
 
-// From Σ √m over the movable vertices and their number; kg.
-APSL_INLINE float greatest_effective_mass(float root_masses, float movable) {
-    const float root_mean = movable > 0.0f ? root_masses / movable : 0.0f;
-    return APSL_GREATEST_MEAN_MASSES * root_mean * root_mean;
+// From Σ log₂ m over the movable vertices and their number; kg.
+APSL_INLINE float greatest_effective_mass(float log_masses, float movable) {
+    return movable > 0.0f ? APSL_GREATEST_MEAN_MASSES * exp2(log_masses / movable) : 0.0f;
 }
 
 // 1/w' for the stiffness K, kg; `given` is w > 0. Without a reason to raise the mass, w itself.

@@ -39,9 +39,9 @@ APSL_KERNEL void filter_in_one_group(
                          vertex_order, predicted, motion, positions + position_offset, velocities + velocity_offset,
                          inverse_masses + inverse_mass_offset);
     const float bad_vertices = group_sum(vertex_sums.bad, scratch);
-    const float root_masses = group_sum(vertex_sums.root_masses, scratch);
+    const float log_masses = group_sum(vertex_sums.log_masses, scratch);
     const float extent = group_max(vertex_sums.extent, scratch);
-    const float greatest_mass = greatest_effective_mass(root_masses, group_sum(vertex_sums.movable, scratch));
+    const float greatest_mass = greatest_effective_mass(log_masses, group_sum(vertex_sums.movable, scratch));
     // What only a few places need is in memory: the loop has no registers to spare.
     if (get_local_id(0) == 0) {
         states[c].greatest_mass = greatest_mass;

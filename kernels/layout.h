@@ -111,7 +111,7 @@ typedef struct {
 #define APSL_PARTIAL_GUESS 9  // r̄·y₀
 #define APSL_PARTIAL_BAD_VERTICES 10
 #define APSL_PARTIAL_CAPPED_CHANGE 11  // as the squared change, each triangle's counted as at most 1
-#define APSL_PARTIAL_ROOT_MASSES 12    // Σ √m over movable vertices, √kg
+#define APSL_PARTIAL_LOG_MASSES 12     // Σ log₂ m over movable vertices, m in kg
 #define APSL_PARTIAL_MOVABLE 13        // vertices
 #define APSL_PARTIAL_RAISED 14         // vertices that weigh more than given
 #define APSL_PARTIAL_MASS_RATIO 15     // their greatest mass over the one given

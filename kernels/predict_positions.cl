@@ -19,7 +19,7 @@ APSL_KERNEL void predict_positions(__global const apsl_cloth* cloths, __global c
                          vertex_order, predicted, motion, positions + position_offset, velocities + velocity_offset,
                          inverse_masses + inverse_mass_offset);
     store_partial(partials, APSL_PARTIAL_BAD_VERTICES, group_sum(sums.bad, scratch));
-    store_partial(partials, APSL_PARTIAL_ROOT_MASSES, group_sum(sums.root_masses, scratch));
+    store_partial(partials, APSL_PARTIAL_LOG_MASSES, group_sum(sums.log_masses, scratch));
     store_partial(partials, APSL_PARTIAL_MOVABLE, group_sum(sums.movable, scratch));
     store_partial(partials, APSL_PARTIAL_EXTENT, group_max(sums.extent, scratch));
     if (get_group_id(0) == 0 && get_local_id(0) == 0) {

@@ -23,10 +23,10 @@ APSL_KERNEL void begin_call(__global const apsl_parameters* parameters, __global
     const uint c = (uint)get_group_id(1);
     const apsl_area_change change = area_change(partials, groups, scratch);
     const float not_finite = sum_partials(partials, APSL_PARTIAL_NOT_FINITE, groups, scratch);
-    const float root_masses = sum_partials(partials, APSL_PARTIAL_ROOT_MASSES, groups, scratch);
+    const float log_masses = sum_partials(partials, APSL_PARTIAL_LOG_MASSES, groups, scratch);
     const float movable = sum_partials(partials, APSL_PARTIAL_MOVABLE, groups, scratch);
     if (get_local_id(0) != 0 || parameters[c].walked == 0) return;
-    states[c].greatest_mass = greatest_effective_mass(root_masses, movable);
+    states[c].greatest_mass = greatest_effective_mass(log_masses, movable);
     store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     if (not_finite > 0.0f) stats[c].status = APSL_STATUS_DIVERGED;
     if (not_finite > 0.0f || change.max <= parameters[c].target_area_change) states[c].stopped = 1;

@@ -75,10 +75,10 @@ APSL_INLINE bool is_bad_vertex(float4 predicted) {
 }
 
 typedef struct {
-    float bad;          // vertices
-    float root_masses;  // Σ √m of movable vertices
-    float movable;      // vertices
-    float extent;       // greatest |coordinate|, m
+    float bad;         // vertices
+    float log_masses;  // Σ log₂ m of movable vertices
+    float movable;     // vertices
+    float extent;      // greatest |coordinate|, m
 } apsl_vertex_sums;
 
 // predicted = (x̃ + Δt ṽ, w), and before a walk motion = (x̃, w), in the limiter's order of vertices. Returns this
@@ -96,7 +96,7 @@ APSL_INLINE apsl_vertex_sums predict_vertices(apsl_cloth cloth, bool active, flo
         predicted[place] = x;
         if (walking) motion[place] = (float4)(load_position(positions, i), w);
         sums.bad += is_bad_vertex(x) ? 1.0f : 0.0f;
-        sums.root_masses += w > 0.0f ? rsqrt(w) : 0.0f;
+        sums.log_masses += w > 0.0f ? -log2(w) : 0.0f;
         sums.movable += w > 0.0f ? 1.0f : 0.0f;
         sums.extent = fmax(sums.extent, fmax(fabs(x.x), fmax(fabs(x.y), fabs(x.z))));
     }

@@ -32,10 +32,10 @@ Real greatest_effective_mass(std::span<const Real> inverse_masses) {
     Real sum = 0, movable = 0;
     for (Real w : inverse_masses)
         if (w > Real(0)) {
-            sum += std::sqrt(Real(1) / w);
+            sum -= std::log(w);
             movable += Real(1);
         }
-    return movable > Real(0) ? static_cast<Real>(greatest_mean_masses) * (sum / movable) * (sum / movable) : Real(0);
+    return movable > Real(0) ? static_cast<Real>(greatest_mean_masses) * std::exp(sum / movable) : Real(0);
 }
 
 template <class Real>

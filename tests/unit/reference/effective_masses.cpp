@@ -60,9 +60,9 @@ TEST_CASE("effective mass: twice the stiffness, between the own mass and the gre
     CHECK(reference::effective_mass(2.0, 3.0, 10.0) == 6.0);
     CHECK(reference::effective_mass(2.0, 30.0, 10.0) == 10.0);
     CHECK(reference::effective_mass(20.0, 30.0, 10.0) == 20.0);  // heavier than the greatest: its own
-    // Masses of 1, 4 and 9 kg, and a pin: ten times the square of the mean root.
+    // Masses of 1, 4 and 9 kg, and a pin: ten times the geometric mean.
     const std::vector<double> inverse{1.0, 0.25, 1.0 / 9.0, 0.0};
-    CHECK(reference::greatest_effective_mass<double>(inverse) == Approx(40.0));
+    CHECK(reference::greatest_effective_mass<double>(inverse) == Approx(10.0 * std::cbrt(36.0)));
     CHECK(reference::greatest_effective_mass<double>(std::vector<double>{0.0, 0.0}) == 0.0);
 }
 
