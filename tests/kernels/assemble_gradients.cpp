@@ -23,12 +23,13 @@ void check_area_sums(const Arrays& arrays) {
     for (std::size_t c = 0; c < arrays.cloth_count(); ++c) {
         const Cloth& cloth = arrays.sources[c];
         const std::size_t count = cloth.rest_areas.size();
-        double greatest = 0.0, squares = 0.0, weights = 0.0, area_ratio = 0.0;
+        double greatest = 0.0, squares = 0.0, capped_squares = 0.0, weights = 0.0, area_ratio = 0.0;
         for (std::size_t a = 0; a < count; ++a) {
             const double area = arrays.solves[c].geometry[a].area;
             const double change = std::abs(area - cloth.rest_areas[a]) / cloth.rest_areas[a];
             greatest = std::max(greatest, change);
             squares += cloth.rest_areas[a] * change * change;
+            capped_squares += cloth.rest_areas[a] * std::min(change, 1.0) * std::min(change, 1.0);
             weights += cloth.rest_areas[a];
             area_ratio = std::max(area_ratio, area / cloth.rest_areas[a]);
         }
@@ -39,6 +40,9 @@ void check_area_sums(const Arrays& arrays) {
         const double rms = std::sqrt(squares / weights);
         const double got = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_SQUARED_CHANGE)) / weights);
         CHECK(std::abs(got - rms) <= absolute + sum_tolerance(4, count) * rms);
+        const double capped_rms = std::sqrt(capped_squares / weights);
+        const double capped_got = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_CAPPED_CHANGE)) / weights);
+        CHECK(std::abs(capped_got - capped_rms) <= absolute + sum_tolerance(4, count) * capped_rms);
         CHECK(std::abs(sum(arrays.partials_of(c, APSL_PARTIAL_MEASURED)) - weights) <=
               sum_tolerance(1, count) * weights);
         CHECK(sum(arrays.partials_of(c, APSL_PARTIAL_NOT_FINITE)) == 0.0);
@@ -69,6 +73,9 @@ void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
                 CHECK(stored.corner[corner].s[3] == 0);
             }
             CHECK(std::abs(static_cast<double>(stored.shift) - (alpha - 1.0) / alpha) <= elementwise_tolerance(2));
+            const double stiffness = stiffening(solve, a);
+            CHECK(std::abs(static_cast<double>(stored.stiffening) - stiffness) <=
+                  elementwise_tolerance(30) * stiffness);
             residual_scale.push_back(solve.scale[a] * solve.geometry[a].area);
             areas.push_back(solve.geometry[a].area);
         }
@@ -212,6 +219,57 @@ TEST_CASE("assemble_gradients: alpha as the schedule has it in each sub-step", "
             CHECK(std::abs(static_cast<double>(arrays.gradients.read()[place].shift) - (expected - 1.0) / expected) <=
                   elementwise_tolerance(8));
     }
+}
+
+TEST_CASE("assemble_gradients: on a walk the start's error is led back, and no triangle grows more than fourfold",
+          "[assemble_gradients]") {
+    constexpr Parameters walk{.regularization = 1.2f, .sub_steps = 5, .stepping = Stepping::small_steps};
+    for (const std::uint32_t group : work_group_sizes())
+        for (const auto& [sub_step, left] :
+             {std::pair{0, 0.75}, std::pair{2, 0.25}, std::pair{3, 0.0}, std::pair{4, 0.0}}) {
+            CAPTURE(group, sub_step);
+            std::vector<Cloth> cloths{make_cloth(strip(300), 1), make_cloth(fan(9), 2)};
+            for (std::size_t a = 0; a < 300; a += 5) cloths[0].rest_areas[a] *= 8.0;  // far too small
+            Arrays arrays(cloths, Matrix::consistent, walk, 3);
+            // Poison where there is none left to read.
+            const auto start_error = [](std::size_t c, std::size_t a) {
+                return 0.3 * std::sin(1.1 * static_cast<double>(a) + static_cast<double>(c));
+            };
+            arrays.start_errors.write(left > 0.0 ? arrays.over_triangles(start_error) : arrays.poisoned_triangles());
+            poison_outputs(arrays);
+            launch::assemble_gradients(arrays, {.work_group_size = group}, sub_step);
+            std::size_t clamped = 0;
+            for (std::size_t c = 0; c < cloths.size(); ++c) {
+                const ScaledSolve& solve = arrays.solves[c];
+                std::vector<double> want, scales, areas, plain;
+                for (std::size_t a = 0; a < solve.scale.size(); ++a) {
+                    const double area = solve.geometry[a].area;
+                    const double asked = area - cloths[c].rest_areas[a] - (left > 0.0 ? left * start_error(c, a) : 0.0);
+                    clamped += asked < -3.0 * area;
+                    const double excess = std::max(asked, -3.0 * area);
+                    want.push_back(solve.scale[a] * excess);
+                    plain.push_back(solve.scale[a] > 0.0 ? excess : 0.0);
+                    scales.push_back(solve.scale[a] * (area + cloths[c].rest_areas[a]));
+                    areas.push_back(area + cloths[c].rest_areas[a]);
+                }
+                CHECK(difference(arrays.of_cloth(arrays.residual.read(), c), want) <=
+                      elementwise_tolerance(20) * norm(scales));
+                CHECK(std::abs(std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_RESIDUAL_EVEN))) - norm(plain)) <=
+                      elementwise_tolerance(20) * norm(areas) + sum_tolerance(2, want.size()) * norm(plain));
+            }
+            CHECK(clamped > 20);
+            check_area_sums(arrays);
+            check_padding(arrays);
+        }
+}
+
+TEST_CASE("assemble_gradients: a whole step reads no start error and clamps nothing", "[assemble_gradients]") {
+    std::vector<Cloth> cloths{make_cloth(strip(40), 1)};
+    for (double& rest_area : cloths[0].rest_areas) rest_area *= 8.0;
+    Arrays arrays(cloths, Matrix::printed, paper_setting, 2);
+    poison_outputs(arrays);  // and start_errors are poison
+    launch::assemble_gradients(arrays, {});
+    check_gradients(arrays, false);
 }
 
 TEST_CASE("measure_area_change: awkward sizes in every work-group size", "[measure_area_change]") {

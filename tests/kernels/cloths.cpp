@@ -68,6 +68,11 @@ ScaledSolve scaled_solve(const Cloth& cloth, Matrix matrix, const std::vector<do
     return solve;
 }
 
+double stiffening(const ScaledSolve& solve, std::size_t a) {
+    const double product = solve.scale[a] * solve.geometry[a].area;
+    return product > 0.0 ? 1.0 / product : 0.0;
+}
+
 std::vector<Cloth> every_kind_of_mesh() {
     return {make_cloth(grid(9, 11, 1.0, 1.0, Diagonals::alternating), 1),
             make_cloth(grid(6, 5, 1.0, 2.0, Diagonals::random), 2),

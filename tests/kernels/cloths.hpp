@@ -49,4 +49,7 @@ struct ScaledSolve {
 
 ScaledSolve scaled_solve(const Cloth& cloth, Matrix matrix, const std::vector<double>& alpha);
 
+/// √(α D) / A of triangle `a`, m⁻¹ kg^(−1/2); 0 where it has no part in the solve.
+double stiffening(const ScaledSolve& solve, std::size_t a);
+
 }  // namespace apsl::test

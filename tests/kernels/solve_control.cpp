@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 using namespace apsl;
 using namespace apsl::test;
@@ -13,7 +15,8 @@ namespace {
 constexpr std::uint32_t groups = 5;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// A single cloth whose groups report: greatest change 0.3, RMS 0.1, ‖b‖² = 15, all finite.
+// A single cloth whose groups report: greatest change 0.3, RMS 0.1, capped RMS 0.05, ‖b‖² = 15, all finite; Σ √m = 6
+// over 20 vertices, of which three weigh up to 7 times what was given; nothing further than 2 m from the origin.
 struct Reported {
     std::vector<Cloth> cloths{make_cloth(strip(9), 1)};
     Arrays arrays;
@@ -21,6 +24,12 @@ struct Reported {
     explicit Reported(const Parameters& parameters) : arrays(cloths, Matrix::printed, parameters, groups) {
         arrays.write_partials(0, APSL_PARTIAL_MAX_CHANGE, {0.1, 0.0, 0.3, 0.2, 0.0});
         arrays.write_partials(0, APSL_PARTIAL_SQUARED_CHANGE, {0.25, 0.25, 0.125, 0.125, 0.25});
+        arrays.write_partials(0, APSL_PARTIAL_CAPPED_CHANGE, {0.04, 0.05, 0.07, 0.05, 0.04});
+        arrays.write_partials(0, APSL_PARTIAL_ROOT_MASSES, {1.0, 2.0, 0.0, 2.0, 1.0});
+        arrays.write_partials(0, APSL_PARTIAL_MOVABLE, {5.0, 5.0, 0.0, 5.0, 5.0});
+        arrays.write_partials(0, APSL_PARTIAL_EXTENT, {1.0, 2.0, 0.0, 2.0, 1.0});
+        arrays.write_partials(0, APSL_PARTIAL_RAISED, {0.0, 2.0, 0.0, 1.0, 0.0});
+        arrays.write_partials(0, APSL_PARTIAL_MASS_RATIO, {1.0, 3.0, 1.0, 7.0, 1.0});
         arrays.write_partials(0, APSL_PARTIAL_MEASURED, {20.0, 20.0, 20.0, 20.0, 20.0});
         arrays.write_partials(0, APSL_PARTIAL_NOT_FINITE, {0.0, 0.0, 0.0, 0.0, 0.0});
         arrays.write_partials(0, APSL_PARTIAL_BAD_VERTICES, {0.0, 0.0, 0.0, 0.0, 0.0});
@@ -83,6 +92,14 @@ TEST_CASE("begin_solve: what is not finite is diverged", "[begin_solve]") {
     CHECK(diverges(APSL_PARTIAL_NOT_FINITE, {0.0, 0.0, 0.0, 1.0, 0.0}));
     CHECK(diverges(APSL_PARTIAL_RESIDUAL_EVEN, {0.0, 0.0, std::nan(""), 0.0, 0.0}));
     CHECK(diverges(APSL_PARTIAL_RESIDUAL_EVEN, {infinity, 0.0, 0.0, 0.0, 0.0}));
+    // No area change is told of where none can be.
+    Reported reported(paper_setting);
+    reported.arrays.write_partials(0, APSL_PARTIAL_NOT_FINITE, {0.0, 0.0, 0.0, 1.0, 0.0});
+    reported.arrays.write_partials(0, APSL_PARTIAL_MAX_CHANGE, {0.1, infinity, 0.0, 0.0, 0.0});
+    launch::begin_solve(reported.arrays, {}, 0);
+    CHECK(reported.stats().initial_max_area_change == 0.0f);
+    CHECK(reported.stats().initial_rms_area_change == 0.0f);
+    CHECK(reported.state().initial_capped_rms == 0.0f);
 }
 
 TEST_CASE("end_call: greatest and RMS change of all groups", "[end_call]") {
@@ -118,6 +135,8 @@ TEST_CASE("begin_call: what a whole step would do, and a stop at the target", "[
         return std::pair(reported.stats(), reported.state());
     };
     const auto [stats, state] = begun(0.25f, 3.0f);
+    CHECK(state.initial_capped_rms == Approx(0.05f).epsilon(1e-6));
+    CHECK(state.greatest_mass == Approx(0.9f).epsilon(1e-6));  // 10 (6/20)²
     CHECK(stats.initial_max_area_change == 0.3f);
     CHECK(stats.initial_rms_area_change == Approx(0.1f).epsilon(1e-6));
     CHECK(state.stopped == 0);
@@ -137,40 +156,116 @@ TEST_CASE("begin_solve: on a walk only its end is held against the target", "[be
     }
 }
 
-TEST_CASE("end_call: never worse than at the start", "[end_call]") {
+TEST_CASE("end_call: the capped RMS decides which state stands", "[end_call]") {
     struct Outcome {
-        float initial_max, initial_rms;
+        float initial_max, initial_rms, initial_capped_rms;
         int status, discarded;
         float max, rms;
     };
-    // What the groups report is 0.3 and 0.1.
+    // What the groups report is 0.3, 0.1 and 0.05.
     const std::vector<Outcome> outcomes{
-        {0.4f, 0.2f, APSL_STATUS_OK, 0, 0.3f, 0.1f},          // both fell
-        {0.2f, 0.2f, APSL_STATUS_WORSENED, 0, 0.3f, 0.1f},    // the greatest rose, the capped RMS fell
-        {0.4f, 0.05f, APSL_STATUS_WORSENED, 1, 0.4f, 0.05f},  // the capped RMS rose
-        {0.2f, 0.05f, APSL_STATUS_WORSENED, 1, 0.2f, 0.05f},  // both rose
-        {9e-6f, 3e-6f, APSL_STATUS_OK, 1, 9e-6f, 3e-6f},      // was at rest
+        {0.4f, 0.2f, 0.1f, APSL_STATUS_OK, 0, 0.3f, 0.1f},           // all fell
+        {0.2f, 0.2f, 0.1f, APSL_STATUS_WORSENED, 0, 0.3f, 0.1f},     // the greatest rose, the capped RMS fell
+        {0.2f, 0.05f, 0.06f, APSL_STATUS_WORSENED, 0, 0.3f, 0.1f},   // the RMS rose too
+        {0.4f, 0.05f, 0.06f, APSL_STATUS_WORSENED, 0, 0.3f, 0.1f},   // the RMS alone rose
+        {0.4f, 0.2f, 0.04f, APSL_STATUS_WORSENED, 1, 0.4f, 0.2f},    // the capped RMS alone rose
+        {0.2f, 0.05f, 0.04f, APSL_STATUS_WORSENED, 1, 0.2f, 0.05f},  // all rose
+        {9e-6f, 3e-6f, 3e-6f, APSL_STATUS_OK, 1, 9e-6f, 3e-6f},      // was at rest
     };
     for (const Outcome& expected : outcomes) {
-        CAPTURE(expected.initial_max, expected.initial_rms);
+        CAPTURE(expected.initial_max, expected.initial_rms, expected.initial_capped_rms);
         Reported reported(paper_setting);
         apsl_stats stats{};
         stats.sub_steps = 10;
         stats.initial_max_area_change = expected.initial_max;
         stats.initial_rms_area_change = expected.initial_rms;
         reported.arrays.stats.write({stats});
-        // The RMS has no say but in the status; the capped one is as great here.
-        reported.arrays.write_partial_sum(0, APSL_PARTIAL_CAPPED_CHANGE, 0.01);
-        reported.arrays.write_partial_sum(0, APSL_PARTIAL_MEASURED, 1.0);
-        reported.arrays.write_partial_sum(0, APSL_PARTIAL_SQUARED_CHANGE, 0.01);
-        reported.arrays.write_partial_sum(0, APSL_PARTIAL_EXTENT, 0.0);
-        reported.arrays.edit_states([&](apsl_solve_state& state) { state.initial_capped_rms = expected.initial_rms; });
+        reported.arrays.edit_states(
+            [&](apsl_solve_state& state) { state.initial_capped_rms = expected.initial_capped_rms; });
         launch::end_call(reported.arrays, {});
         const apsl_stats got = reported.stats();
         CHECK(got.status == expected.status);
         CHECK(reported.state().discarded == expected.discarded);
         CHECK(got.max_area_change == expected.max);
         CHECK(got.rms_area_change == Approx(expected.rms).epsilon(1e-6));
+        CHECK(got.raised_vertices == 3);
+        CHECK(got.greatest_mass_ratio == 7.0f);
+    }
+}
+
+TEST_CASE("end_call: what the rounding of positions makes counts as rest", "[end_call]") {
+    // 2.4e-7 · 2000 m over √(100 m² / 9 triangles): 1.44e-4.
+    for (const auto& [initial_max, extent, status] :
+         {std::tuple{1.4e-4f, 2000.0, APSL_STATUS_OK}, std::tuple{1.5e-4f, 2000.0, APSL_STATUS_WORSENED},
+          std::tuple{1.4e-4f, 200.0, APSL_STATUS_WORSENED}, std::tuple{1.4e-4f, infinity, APSL_STATUS_WORSENED}}) {
+        CAPTURE(initial_max, extent);
+        Reported reported(paper_setting);
+        apsl_stats stats{};
+        stats.sub_steps = 10;
+        stats.initial_max_area_change = initial_max;
+        stats.initial_rms_area_change = 1e-4f;
+        reported.arrays.stats.write({stats});
+        reported.arrays.edit_states([](apsl_solve_state& state) { state.initial_capped_rms = 1e-4f; });
+        reported.arrays.write_partials(0, APSL_PARTIAL_EXTENT, {0.0, extent, 0.0, 1.0, 0.0});
+        launch::end_call(reported.arrays, {});
+        CHECK(reported.stats().status == status);
+        CHECK(reported.state().discarded == 1);
+        CHECK(reported.stats().max_area_change == initial_max);
+    }
+}
+
+TEST_CASE("end_call: a diverged call tells of the state as given, whatever the groups report", "[end_call]") {
+    for (const int status : {APSL_STATUS_OK, APSL_STATUS_DIVERGED}) {
+        Reported reported(paper_setting);
+        apsl_stats stats{};
+        stats.sub_steps = 10;
+        stats.status = status;
+        stats.initial_max_area_change = 0.2f;
+        stats.initial_rms_area_change = 0.15f;
+        reported.arrays.stats.write({stats});
+        reported.arrays.edit_states([](apsl_solve_state& state) { state.initial_capped_rms = 0.12f; });
+        if (status == APSL_STATUS_OK) reported.arrays.write_partial_sum(0, APSL_PARTIAL_BAD_VERTICES, 1.0);
+        launch::end_call(reported.arrays, {});
+        CHECK(reported.stats().status == APSL_STATUS_DIVERGED);
+        CHECK(reported.state().discarded == 1);
+        CHECK(reported.stats().max_area_change == 0.2f);
+        CHECK(reported.stats().rms_area_change == 0.15f);
+    }
+}
+
+TEST_CASE("end_call: names the triangle with the greatest area change, if that rose and stands",
+          "[end_call][offender]") {
+    for (const std::uint32_t group : work_group_sizes()) {
+        CAPTURE(group);
+        std::vector<Cloth> cloths{make_cloth(strip(300), 1), make_cloth(strip(300), 2)};
+        cloths[1].rest_areas[131] /= 4.0;
+        const auto ended = [&](float initial_max, float initial_capped_rms) {
+            Arrays arrays(cloths, Matrix::consistent, paper_setting, groups);
+            arrays.edit_states([&](apsl_solve_state& state) { state.initial_capped_rms = initial_capped_rms; });
+            apsl_stats stats{};
+            stats.sub_steps = 10;
+            stats.initial_max_area_change = initial_max;
+            stats.initial_rms_area_change = 1.0f;
+            arrays.stats.write({stats, stats});
+            launch::measure_area_change(arrays, {.work_group_size = group});
+            for (std::size_t c = 0; c < 2; ++c)
+                for (const int kind : {APSL_PARTIAL_BAD_VERTICES, APSL_PARTIAL_EXTENT})
+                    arrays.write_partial_sum(c, kind, 0.0);
+            launch::end_call(arrays, {.work_group_size = group});
+            CHECK(arrays.stats.read()[0].offender == APSL_OFFENDER_NONE);  // no triangle is off by more than a third
+            return arrays.stats.read()[1];
+        };
+        const apsl_stats named = ended(1.5f, 1.0f);
+        CHECK(named.status == APSL_STATUS_WORSENED);
+        CHECK(named.offender == APSL_OFFENDER_TRIANGLE);
+        CHECK(named.offender_index == 131);
+        const apsl_stats dropped = ended(1.5f, 0.01f);
+        CHECK(dropped.status == APSL_STATUS_WORSENED);
+        CHECK(dropped.offender == APSL_OFFENDER_NONE);
+        CHECK(dropped.max_area_change == 1.5f);
+        const apsl_stats fell = ended(10.0f, 1.0f);
+        CHECK(fell.status == APSL_STATUS_OK);
+        CHECK(fell.offender == APSL_OFFENDER_NONE);
     }
 }
 

@@ -17,11 +17,12 @@ namespace apsl::test {
 /// and the device are given the same.
 struct MovingCloth {
     std::shared_ptr<const Topology> topology;
-    std::vector<double> positions;       ///< m, [3V]
-    std::vector<double> velocities;      ///< m/s, [3V]
-    std::vector<double> inverse_masses;  ///< 1/kg, [V]
-    std::vector<double> rest_areas;      ///< m², [T]
-    std::vector<double> regularization;  ///< α, [T]
+    std::vector<double> positions;            ///< m, [3V]
+    std::vector<double> velocities;           ///< m/s, [3V]
+    std::vector<double> inverse_masses;       ///< 1/kg, [V]
+    std::vector<double> rest_areas;           ///< m², [T]
+    std::vector<double> regularization;       ///< α, [T]
+    std::vector<double> rest_positions = {};  ///< m, [3V], where the areas are the rest areas; empty: not known
 };
 
 /// The mesh at rest where it lies, wavy now and about to be stretched by some 15 %: unequal masses, two pins.

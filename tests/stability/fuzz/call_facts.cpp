@@ -45,6 +45,29 @@ std::array<double, 3> edge_lengths(const Triangle& triangle, const std::vector<d
     return lengths;
 }
 
+bool same_for_all(const std::vector<double>& vectors) {
+    for (std::size_t n = 3; n < vectors.size(); ++n)
+        if (vectors[n] != vectors[n - 3]) return false;
+    return true;
+}
+
+std::optional<double> start_error(const MovingCloth& cloth) {
+    const std::vector<double>& rest = cloth.rest_positions;
+    if (rest.size() != cloth.positions.size() || !same_for_all(cloth.velocities)) return {};
+    const std::vector<double> areas = reference::areas<double>(*cloth.topology, rest);
+    for (std::size_t a = 0; a < areas.size(); ++a)
+        if (!(std::abs(areas[a] - cloth.rest_areas[a]) <= 1e-6 * areas[a])) return {};
+    double squares = 0.0;
+    for (std::size_t n = 0; n < rest.size(); ++n) {
+        const double off = cloth.positions[n] - rest[n], w = cloth.inverse_masses[n / 3];
+        if (w > 0.0)
+            squares += off * off / w;
+        else if (off != 0.0)
+            return {};
+    }
+    return std::sqrt(squares);
+}
+
 bool ordinary(const std::vector<double>& numbers, double least, double greatest) {
     return std::all_of(numbers.begin(), numbers.end(), [&](double number) {
         return number == 0.0 || (std::abs(number) >= least && std::abs(number) <= greatest);
@@ -107,11 +130,18 @@ CallFacts::CallFacts(const MovingCloth& cloth, const Options& options, const Par
         squares += least_diagonal > 0.0 ? excess * excess / least_diagonal : infinity;
     }
     scaled_excess = std::sqrt(squares);
+    mass_weighted_start_error = start_error(cloth);
     max_before = largest(before);
     max_after = largest(after);
     max_change_error = largest(change_error);
     rms_before = rms(before, cloth.rest_areas);
     rms_after = rms(after, cloth.rest_areas);
+    const auto capped = [](std::vector<double> changes) {
+        for (double& change : changes) change = std::min(change, 1.0);
+        return changes;
+    };
+    capped_rms_before = rms(capped(before), cloth.rest_areas);
+    capped_rms_after = rms(capped(after), cloth.rest_areas);
 
     // Fourth powers of lengths, masses in between and out again: 1e-6 to 1e6 stays far from the ends of the range.
     ordinary_numbers = input_is_finite && greatest_position < 1e6 && longest < 1e6 &&

@@ -5,6 +5,7 @@
 
 #include <apsl/parameters.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace apsl::test {
@@ -27,9 +28,13 @@ struct CallFacts {
     /// Area changes |A − A⁰| / A⁰ at x + Δt v, [T], 0 where A⁰ ≤ 0, and how far off rounding may put each.
     std::vector<double> before, after, change_error;
     double max_before, max_after, rms_before, rms_after, max_change_error;
+    double capped_rms_before, capped_rms_after;  ///< each triangle's change counted as at most 1
     /// √Σ b²/D at x + Δt v before, over triangles that can move, b = A − A⁰ with its rounding; infinite where rounding
     /// leaves nothing of a D.
     double scaled_excess;
+    /// √Σ m |off|², √kg m: how far the vertices lie from where areas are the rest areas, with pins in their places and
+    /// one velocity for all; none where no such place is known.
+    std::optional<double> mass_weighted_start_error;
     double greatest_inverse_mass;  ///< 1/kg
     double greatest_valence;       ///< most triangles at a vertex
 

@@ -3,6 +3,7 @@
 
 #include <apsl/reference.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -63,6 +64,51 @@ void place(Random& random, MovingCloth& cloth, double size) {
     }
 }
 
+/// As contact or a rough start leaves a cloth: displaced from where it rests, all of it with one velocity or none. Pins
+/// stay.
+void displace(Random& random, MovingCloth& cloth, double size) {
+    std::vector<double>& x = cloth.positions;
+    const std::size_t axis = random.below(3);
+    const double depth = random.one_of({0.001, 0.01, 0.05, 0.3}) * size;
+    const auto at = [&](std::size_t v, std::size_t along) -> double& { return x[3 * v + along]; };
+    const std::size_t count = x.size() / 3, middle = random.below(count);
+    switch (random.below(6)) {
+        case 0: {  // pressed against a plane
+            double level = at(0, axis);
+            for (std::size_t v = 0; v < count; ++v) level = std::min(level, at(v, axis));
+            for (std::size_t v = 0; v < count; ++v) at(v, axis) = std::max(at(v, axis), level + depth);
+            break;
+        }
+        case 1:  // by a ball
+            for (std::size_t v = 0; v < count; ++v) {
+                double square = 0.0;
+                for (std::size_t k = 0; k < 3; ++k)
+                    square += (at(v, k) - cloth.rest_positions[3 * middle + k]) *
+                              (at(v, k) - cloth.rest_positions[3 * middle + k]);
+                const double radius = 0.3 * size;
+                if (square < radius * radius) at(v, axis) += depth * std::sqrt(1.0 - square / (radius * radius));
+            }
+            break;
+        case 2:  // every vertex by itself
+            for (double& coordinate : x) coordinate += depth * random.number(-1.0, 1.0);
+            break;
+        case 3:  // one vertex
+            at(middle, axis) += depth;
+            break;
+        case 4: {  // another size
+            const double factor = random.one_of({0.0, 0.001, 0.1, 0.9, 0.99, 1.01, 1.1, 2.0});
+            for (double& coordinate : x) coordinate *= factor;
+            break;
+        }
+        default:  // flattened
+            for (std::size_t v = 0; v < count; ++v) at(v, axis) *= random.one_of({0.0, 0.0, 1e-3});
+    }
+    for (std::size_t n = 0; n < x.size(); ++n)
+        if (cloth.inverse_masses[n / 3] == 0.0) x[n] = cloth.rest_positions[n];
+    const double speed = random.one_of({0.0, 0.0, 1.0});
+    for (std::size_t n = 0; n < x.size(); ++n) cloth.velocities[n] = n % 3 == axis ? -speed : 0.0;
+}
+
 void weigh(Random& random, MovingCloth& cloth) {
     const double spread = random.one_of({1.0, 2.0, 1000.0});
     for (double& inverse_mass : cloth.inverse_masses)
@@ -97,8 +143,13 @@ MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const
         if (!std::isfinite(inverse_mass)) inverse_mass = 1.0;  // of triangles without area
     cloth.velocities.assign(cloth.positions.size(), 0.0);
     weigh(random, cloth);
-    move(random, cloth, size);
-    place(random, cloth, size);
+    cloth.rest_positions = cloth.positions;
+    if (random.chance(0.3)) {
+        displace(random, cloth, size);
+    } else {
+        move(random, cloth, size);
+        place(random, cloth, size);
+    }
     const double alpha_above_1 = random.one_of({0.0, 0.01, 0.5, 1e6});
     for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
         cloth.regularization.push_back(1.0 + alpha_above_1 * random.number(0.5, 1.5));

@@ -173,6 +173,7 @@ private:
             MovingCloth smaller = cloth;
             smaller.positions.clear();
             smaller.velocities.clear();
+            smaller.rest_positions.clear();  // for the vertices that are left, in a cloth that knows them
             smaller.inverse_masses.clear();
             const auto offsets = cloth.topology->corner_offsets();
             for (std::size_t v = 0; v < place.size(); ++v) {
@@ -182,6 +183,8 @@ private:
                 for (std::size_t k = 0; k < 3; ++k) {
                     smaller.positions.push_back(cloth.positions[3 * v + k]);
                     smaller.velocities.push_back(cloth.velocities[3 * v + k]);
+                    if (!cloth.rest_positions.empty())
+                        smaller.rest_positions.push_back(cloth.rest_positions[3 * v + k]);
                 }
             }
             std::vector<Triangle> triangles(cloth.topology->triangles().begin(), cloth.topology->triangles().end());
