@@ -45,7 +45,7 @@ struct MeasuredRun {
     std::size_t triangles = 0;
     PrincipalStretch principal_stretch;  ///< over all ends of frames
     std::vector<FrameDeviation> deviation;
-    scenes::Energy start_energy;         ///< before the first step
+    scenes::Energy start_energy;  ///< before the first step
     std::array<double, 3>
         mean_displacement{};  ///< m, measures.hpp, mean over the ends of the last quarter of the frames
     std::optional<scenes::Breakdown> breakdown;

@@ -86,7 +86,7 @@ struct RunReport {
     LightVertices light;
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step
     std::size_t device_bytes = 0;
-    Energy start_energy;              ///< before the first step
+    Energy start_energy;  ///< before the first step
     std::vector<FrameReport> frames;
     OverStretchReport over_stretch;
     std::optional<Breakdown> breakdown;

@@ -23,8 +23,8 @@ Real geometric_stiffness(const Topology& topology, std::span<const TriangleGeome
 template <class Real>
 Real effective_mass(Real mass, Real stiffness, Real greatest);
 
-/// The greatest effective mass in a cloth: ten times the geometric mean of its movable vertices' masses, which neither a
-/// few heavy vertices nor many light ones move far. kg; 0 where none is movable.
+/// The greatest effective mass in a cloth: ten times the geometric mean of its movable vertices' masses, which neither
+/// a few heavy vertices nor many light ones move far. kg; 0 where none is movable.
 template <class Real>
 Real greatest_effective_mass(std::span<const Real> inverse_masses);
 

@@ -81,9 +81,9 @@ TEST_CASE("a run leaves a whole report and frames that belong to it") {
     int iterations = 0;
     for (int k = 0; k < 3; ++k) {
         const nlohmann::json& frame = report["frames"][k];
-        CHECK(contains(keys(frame),
-                       {"frame", "max_area_change", "rms_area_change", "max_edge_stretch", "min_edge_stretch",
-                        "max_speed", "energy", "sub_steps", "cg_iterations", "filter_seconds", "step_seconds", "status"}));
+        CHECK(contains(keys(frame), {"frame", "max_area_change", "rms_area_change", "max_edge_stretch",
+                                     "min_edge_stretch", "max_speed", "energy", "sub_steps", "cg_iterations",
+                                     "filter_seconds", "step_seconds", "status"}));
         CHECK(frame["frame"] == k);
         CHECK(frame["sub_steps"] == 10);
         CHECK(frame["status"] == "ok");
