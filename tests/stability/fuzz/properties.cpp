@@ -73,9 +73,10 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
     const Stats& stats = filtered.stats;
     const bool diverged = stats.status == Status::diverged;
     // Where a solve broke, no vertex and no triangle did.
-    if (!diverged && stats.offender != Offender::none)
+    const bool worsened = stats.status == Status::worsened;
+    if (!diverged && stats.offender != Offender::none && !(worsened && stats.offender == Offender::triangle))
         return broken(
-            "an offender is named where no call diverged",
+            "an offender is named where no call diverged or worsened",
             {{"status", static_cast<double>(stats.status)}, {"offender", static_cast<double>(stats.offender)}});
     if (facts.must_diverge && !diverged)
         return broken("input that is not finite did not diverge", {{"status", static_cast<double>(stats.status)}});
