@@ -112,6 +112,12 @@ CallFacts::CallFacts(const MovingCloth& cloth, const Options& options, const Par
     max_change_error = largest(change_error);
     rms_before = rms(before, cloth.rest_areas);
     rms_after = rms(after, cloth.rest_areas);
+    const auto capped = [](std::vector<double> changes) {
+        for (double& change : changes) change = std::clamp(change, -1.0, 1.0);
+        return changes;
+    };
+    capped_rms_before = rms(capped(before), cloth.rest_areas);
+    capped_rms_after = rms(capped(after), cloth.rest_areas);
 
     // Fourth powers of lengths, masses in between and out again: 1e-6 to 1e6 stays far from the ends of the range.
     ordinary_numbers = input_is_finite && greatest_position < 1e6 && longest < 1e6 &&

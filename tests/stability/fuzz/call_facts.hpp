@@ -27,6 +27,7 @@ struct CallFacts {
     /// Area changes |A − A⁰| / A⁰ at x + Δt v, [T], 0 where A⁰ ≤ 0, and how far off rounding may put each.
     std::vector<double> before, after, change_error;
     double max_before, max_after, rms_before, rms_after, max_change_error;
+    double capped_rms_before, capped_rms_after;  ///< each triangle's counted as at most 1
     /// √Σ b²/D at x + Δt v before, over triangles that can move, b = A − A⁰ with its rounding; infinite where rounding
     /// leaves nothing of a D.
     double scaled_excess;

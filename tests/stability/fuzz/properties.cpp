@@ -140,8 +140,9 @@ Check check_never_worse(const CallFacts& facts, const Filtered& filtered) {
                        {"said RMS", stats.initial_rms_area_change},
                        {"is", facts.rms_before}});
     // Rounding of the velocities comes after the two were compared.
-    if (facts.rms_after > facts.rms_before + 2.0 * error)
-        return broken("RMS area change rose", {{"before", facts.rms_before}, {"after", facts.rms_after}});
+    if (facts.capped_rms_after > facts.capped_rms_before + 2.0 * error)
+        return broken("capped RMS area change rose",
+                      {{"before", facts.capped_rms_before}, {"after", facts.capped_rms_after}});
     if (facts.max_after > facts.max_before + 2.0 * error && stats.status != Status::worsened)
         return broken("greatest area change rose, and the status does not say so",
                       {{"before", facts.max_before}, {"after", facts.max_after}});
