@@ -59,10 +59,12 @@ APSL_INLINE void order_values(apsl_cloth cloth, bool active, __global const uint
 // B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|². Reference: apsl::reference::diagonal_bound.
 APSL_INLINE lanes bounded_diagonal(apsl_triangle_geometry t, __global const uint* triangles,
                                    __global const float* vertex_bounds, uint first) {
-    lanes sum = 0.0f;
-    for (uint k = 0; k < 3; ++k)
-        sum += load_corner_values(triangles, vertex_bounds, first, k) * t.inverse_mass[k] * squared_length(t.edge[k]);
-    return 0.5f * sum;
+    const lanes s0 = load_corner_values(triangles, vertex_bounds, first, 0);
+    const lanes s1 = load_corner_values(triangles, vertex_bounds, first, 1);
+    const lanes s2 = load_corner_values(triangles, vertex_bounds, first, 2);
+    return 0.5f *
+           (s0 * t.inverse_mass[0] * squared_length(t.edge[0]) + s1 * t.inverse_mass[1] * squared_length(t.edge[1]) +
+            s2 * t.inverse_mass[2] * squared_length(t.edge[2]));
 }
 
 typedef struct {

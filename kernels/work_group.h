@@ -20,13 +20,11 @@ typedef struct {
 } apsl_range;
 
 // In a kernel that is launched with one work-group a cloth: the compiler then knows every share, and holds fewer
-// values.
+// values. On AMD alone, where registers are what limits: Oclgrind has no such intrinsic.
 APSL_INLINE void assume_one_group(void) {
-#ifdef __has_builtin
-#if __has_builtin(__builtin_assume)
+#ifdef __AMDGCN__
     __builtin_assume(get_num_groups(0) == 1);
     __builtin_assume(get_group_id(0) == 0);
-#endif
 #endif
 }
 
