@@ -40,12 +40,13 @@ APSL_KERNEL void gather_displacements(__global const apsl_cloth* cloths, __globa
     const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     if (get_group_id(0) == 0 && get_local_id(0) == 0 && !states[c].stopped) {
         // A polynomial is as long as it is, and nothing measures what it leaves.
-        const bool converged = APSL_CHEBYSHEV || residual <= parameters[c].tolerance_squared * initial;
+        const bool measured = !APSL_CHEBYSHEV;
+        const bool converged = !measured || residual <= parameters[c].tolerance_squared * initial;
         states[c].adaptive_factor =
             adapted_factor(states[c].adaptive_factor, parameters[c], states[c].solve_iterations, converged);
         // The product with a guess costs as much as an iteration.
         stats[c].cg_iterations += states[c].solve_iterations + (APSL_KEPT_PRESSURES > 0 ? 1 : 0);
-        if (initial > 0.0f && !APSL_CHEBYSHEV)
+        if (measured && initial > 0.0f)
             stats[c].residual = fmax(stats[c].residual, relative_residual(residual, initial));
         if (!converged && stats[c].status == APSL_STATUS_OK) stats[c].status = APSL_STATUS_NOT_CONVERGED;
     }

@@ -10,8 +10,8 @@
 #define APSL_POSITIONS_ONLY 0
 #endif
 
-// A linearised area is asked to grow by at most this many times itself: from nearly nothing it would overshoot without
-// bound.
+// A small step asks a triangle for at most this multiple of its present area: from nearly nothing a linearised step
+// overshoots without bound.
 #define APSL_GREATEST_GROWTH 4.0f
 
 // Sub-steps that move on by a part of Δt: none where there are no velocities, which the compiler then knows.

@@ -10,8 +10,8 @@ namespace apsl {
 /// From so many sub-steps up Stepping::automatic takes small steps.
 inline constexpr int least_automatic_small_steps = 20;
 
-/// The growth of a triangle, in its present area, that a small step asks for at most. A linearised step from nearly no
-/// area overshoots without bound.
+/// The area that a small step asks of a triangle at most, as a multiple of its present area. A linearised step from
+/// nearly no area overshoots without bound.
 inline constexpr float greatest_growth = 4.0f;
 
 /// Sub-steps that move on by a part of the time step, an equal one each; 0 where all correct at its end. Below 20

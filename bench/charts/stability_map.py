@@ -10,10 +10,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 # Told apart by colour-blind eyes and in print by how dark they are.
-COLOURS = {"h": "#56B4E9", "i": "#F0E442", "w": "#E69F00", "d": "#222222", "t": "#bbbbbb"}
+COLOURS = {"h": "#56B4E9", "i": "#F0E442", "w": "#E69F00", "g": "#AA4499", "d": "#222222", "t": "#bbbbbb"}
 TITLES = {"apsl_defaults": "Ours, the defaults", "apsl": "Ours, the paper's setting",
           "apsl_printed": "Ours, matrix as printed"}
-SHORT = {"h": "held", "i": "inaccurate: above 10 %", "w": "worse than no limiter", "d": "diverged", "t": "not finished"}
+SHORT = {"h": "held", "i": "inaccurate: above 10 %", "w": "worse than no limiter", "g": "gained energy", "d": "diverged",
+         "t": "not finished"}
 
 
 def squares(axis, rows):
@@ -36,17 +37,20 @@ def dots(axis, rows, not_ok):
         axis.scatter(*zip(*points), s=5, color="#222222", linewidths=0)
 
 
-def legend(figure, document, place):
+def legend(figure, document, place, below=0.0):
+    """`below`: inches off the figure's edge."""
     used = set("".join(row for method in document["methods"] for row in method["outcome"]))
     handles = [Patch(facecolor=COLOURS[letter], label=SHORT[letter]) for letter in COLOURS if letter in used]
-    figure.legend(handles=handles, loc=place, ncols=len(handles), fontsize=9)
+    figure.legend(handles=handles, loc=place, ncols=len(handles), fontsize=9,
+                  bbox_to_anchor=(0.0, 0.0, 1.0, 1.0 - below / figure.get_figheight()))
 
 
 def labels(axis):
     """Time steps as 1/60, the rest as a person writes it."""
     if axis["label"].startswith("time step"):
         return [f"1/{round(1.0 / value)}" for value in axis["values"]]
-    return [plain(value) if value >= 1000 else f"{value:g}" for value in axis["values"]]
+    return [value if isinstance(value, str) else plain(value) if value >= 1000 else f"{value:g}"
+            for value in axis["values"]]
 
 
 def title_of(method):
@@ -73,10 +77,10 @@ def draw_map(document):
         axis.set_xticks(range(len(document["x"]["values"])), labels(document["x"]), rotation=90, fontsize=7)
         axis.set_yticks(range(len(document["y"]["values"])), labels(document["y"]), fontsize=7)
         axis.tick_params(labelbottom=place + columns >= len(methods))
-    figure.suptitle(document["title"] + "\n", x=0.01, ha="left", fontsize=11)
+    figure.suptitle(document["title"] + "\n\n", x=0.01, ha="left", fontsize=11)
     figure.supxlabel(document["x"]["label"], fontsize=9)
     figure.supylabel(document["y"]["label"], fontsize=9)
-    legend(figure, document, "upper right")
+    legend(figure, document, "upper left", below=0.22)
     return figure
 
 
@@ -91,7 +95,7 @@ def draw_cases(document):
             greatest = method["greatest"][row][0]
             text = "–" if greatest is None else plain(float(f"{100.0 * greatest:.2g}")) if greatest < 10.0 else "> 1000"
             axis.text(column, row, text + ("*" if method["not_ok"][row] else ""), ha="center", va="center", fontsize=6,
-                      color="white" if table[row][column] == "d" else "#222222")
+                      color="white" if table[row][column] in "gd" else "#222222")
     axis.set_xticks(range(len(methods)), [title_of(method) for method in methods], rotation=45, ha="left", fontsize=7.5)
     axis.xaxis.tick_top()
     axis.set_yticks(range(len(cases)), cases, fontsize=8)

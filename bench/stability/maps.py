@@ -1,22 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""What the atlas of failure runs: maps of two axes, and single cases. Each point is a scene as `apsl run` takes it."""
+"""What the atlas of failure runs: all its maps, and single cases."""
 
 import copy
-from dataclasses import dataclass, field
-from typing import Callable
 
+import contact
 import meshes
-
-SIDE = meshes.CELLS + 1  # vertices of the base cloth along each side
-SECONDS = 1.0            # simulated at every point
-FRAME = 1.0 / 60.0       # s, of a frame, where the time step is not longer
-
-BASE = {
-    "mesh": {"grid": {"vertices": [SIDE, SIDE], "size": [1.0, 1.0], "diagonals": "alternating"}},
-    "density": 0.2,
-    "pins": [{"vertices": [0, SIDE - 1]}],
-    "integrator": {"implicit_springs": {"stretch_stiffness": 20.0, "bend_stiffness": 0.01, "damping": 0.5}},
-}
+import slivers
+import starts
+from scene_map import (BASE, FRAME, MORE_RIVALS, OURS, PAPER, RIVALS, SECONDS, SIDE, STIFFNESS, TIME_STEP, WITHOUT, Axis,
+                       Map, changed, driven, point_name, set_stiffness, text, with_time_step)
 
 # scenes/skirt.json, coarser: where long columns of cloth hang from a pinned waist.
 SKIRT = {
@@ -26,60 +18,6 @@ SKIRT = {
     "pins": [{"box": {"min": [-1.0, 0.27, -1.0]}}],
     "integrator": {"implicit_springs": {"stretch_stiffness": 5.0, "bend_stiffness": 0.01, "damping": 0.5}},
 }
-
-# The paper's: consistent matrix, α = 1.2, 10 sub-steps, tolerance 0.1. The printed matrix needs α ≥ 2 when iterated.
-PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2, "strain_limiting.tolerance": 0.1,
-         "strain_limiting.max_iterations": 50, "strain_limiting.target_area_change": 0,
-         "strain_limiting.first_regularization": 0, "strain_limiting.kept_pressures": 0}
-PRINTED = {**PAPER, "strain_limiting.regularization": 2}
-OURS = [{"name": "apsl_defaults", "knobs": {}}, {"name": "apsl", "knobs": PAPER},
-        {"name": "apsl_printed", "knobs": PRINTED}]
-# With the standard settings of bench/methods, most of them 20 iterations: what takes about as long as ours.
-RIVALS = [{"name": name, "knobs": {}} for name in (
-    "pbd_area_gauss_seidel", "pbd_area_jacobi", "xpbd_area", "strain_based_dynamics_area", "ring_area",
-    "hierarchical_constraints", "hierarchical_pbd", "edge_limits_gauss_seidel", "pbd_edges",
-    "strain_based_dynamics_strain", "continuum_strain_limiting")]
-# As slow as twenty of the others, or nearly the same as one of them: in the single cases alone.
-MORE_RIVALS = [{"name": name, "knobs": {}} for name in (
-    "pbd_area_colored", "edge_limits_jacobi", "xpbd_edges", "fast_projection", "nonconforming_edge_midpoint")]
-WITHOUT = [{"name": "none", "knobs": {}}]
-
-
-@dataclass
-class Axis:
-    label: str
-    values: list
-    change: Callable  # (scene, value): changes the scene
-
-
-@dataclass
-class Map:
-    name: str
-    title: str
-    x: Axis
-    y: Axis
-    base: dict = field(default_factory=lambda: BASE)
-    methods: list = field(default_factory=lambda: WITHOUT + OURS + RIVALS)
-    alpha: bool = False  # the x axis is ours alone, a knob: no scene says it
-
-    def scene(self, x, y):
-        scene = with_time_step(copy.deepcopy(self.base), FRAME)
-        if not self.alpha:
-            self.x.change(scene, x)
-        self.y.change(scene, y)
-        return scene
-
-
-def with_time_step(scene, time_step, seconds=SECONDS):
-    """As many steps a frame as make it last 1/60 s, and as many frames as make `seconds`."""
-    scene["time_step"] = time_step
-    scene["steps_per_frame"] = max(1, round(FRAME / time_step))
-    scene["frames"] = round(seconds / (time_step * scene["steps_per_frame"]))
-    return scene
-
-
-def set_stiffness(scene, value):
-    scene["integrator"]["implicit_springs"]["stretch_stiffness"] = value
 
 
 def set_neighbours(scene, ratio):
@@ -121,9 +59,6 @@ def set_twist(scene, turns):
                       "motion": {"rotate": {"axis": [1, 0, 0], "degrees_per_second": 360.0 * turns}}}]
 
 
-TIME_STEP = Axis("time step (s)", [1 / 1000, 1 / 500, 1 / 240, 1 / 120, 1 / 60, 1 / 30, 1 / 20, 1 / 15], with_time_step)
-STIFFNESS = Axis("spring stiffness (N/m)", [0.2, 0.6, 2.0, 6.0, 20.0, 60.0, 200.0, 600.0, 2000.0, 6000.0, 20000.0],
-                 set_stiffness)
 RATIOS = [1.0, 10.0, 100.0, 1000.0, 10000.0, 100000.0]
 
 MAPS = [
@@ -150,11 +85,8 @@ MAPS = [
         Axis("speed (m/s)", [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0], set_shake), STIFFNESS),
     Map("twist_stiffness", "One edge turning against the other",
         Axis("turns a second", [0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0], set_twist), STIFFNESS),
+    *contact.MAPS, *slivers.MAPS, *starts.MAPS,
 ]
-
-
-def changed(**changes):
-    return with_time_step({**copy.deepcopy(BASE), **changes}, FRAME)
 
 
 def all_pinned():
@@ -212,6 +144,7 @@ def cases():
         ("0.01 kg/m² at 1/15 s", light_and_long()),
         ("gravity × 100", changed(gravity=[0, -981.0, 0])),
         ("no springs at all", changed(integrator={"none": {}})),
+        *starts.cases(), *contact.cases(),
     ]
 
 

@@ -46,7 +46,7 @@ def columns_of(name, chosen):
         if chosen.alpha:
             methods = [{**method, "knobs": {**method["knobs"], "strain_limiting.regularization": x}}
                        if method["name"] != "none" else method for method in methods]
-        columns.append(([(f"{x:g} {y:g}", chosen.scene(x, y)) for y in chosen.y.values], methods))
+        columns.append(([(maps.point_name(x, y), chosen.scene(x, y)) for y in chosen.y.values], methods))
     return columns
 
 
@@ -91,8 +91,9 @@ def condensed(name, chosen, results):
         document["title"] = chosen.title
         document["x"] = {"label": chosen.x.label, "values": chosen.x.values}
         document["y"] = {"label": chosen.y.label, "values": chosen.y.values}
-        points = [[f"{x:g} {y:g}" for x in chosen.x.values] for y in chosen.y.values]
+        points = [[maps.point_name(x, y) for x in chosen.x.values] for y in chosen.y.values]
     runs = {(run["scene"], run["method"]): run for part in results for run in part["runs"]}
+    driven = {scene["name"]: maps.driven(scene["document"]) for part in results for scene in part["scenes"]}
     document["methods"] = []
     for method in names:
         run = next(run for run in first["runs"] if run["method"] == method)
@@ -100,8 +101,10 @@ def condensed(name, chosen, results):
         without = [[runs[point, "none"] for point in row] for row in points]
         document["methods"].append({
             "name": method, "title": run["title"], "citation": run["citation"], "knobs": run["knobs"],
-            "outcome": ["".join(outcome.outcome(a, b) for a, b in zip(*rows)) for rows in zip(own, without)],
+            "outcome": ["".join(outcome.outcome(a, b, driven[a["scene"]]) for a, b in zip(*rows))
+                        for rows in zip(own, without)],
             "greatest": [[rounded(outcome.greatest(a)) for a in row] for row in own],
+            "edges": [[rounded(outcome.longest_edge(a)) for a in row] for row in own],
             "not_ok": [[column for column, a in enumerate(row) if a["status"] != "ok"] for row in own],
         })
     return document

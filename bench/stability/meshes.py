@@ -6,14 +6,15 @@ import math
 CELLS = 16  # along each side of the square metre that all of them begin with
 
 
-def grid(cells=CELLS, width=1.0, corner=(-0.5, 0.0, -0.5), step=None):
+def grid(cells=CELLS, width=1.0, corner=(-0.5, 0.0, -0.5), step=None, rows=None):
     """Vertices row by row and counter-clockwise triangles of a square horizontal grid with alternating diagonals.
-    `step`: the place of a column as a share of the width; even without it."""
+    `step`: the place of a column as a share of the width; even without it. `rows`: the places of the rows likewise."""
     step = step or (lambda column: column / cells)
-    vertices = [(corner[0] + width * step(c), corner[1], corner[2] + width * r / cells)
-                for r in range(cells + 1) for c in range(cells + 1)]
+    rows = rows or [row / cells for row in range(cells + 1)]
+    vertices = [(corner[0] + width * step(c), corner[1], corner[2] + width * row)
+                for row in rows for c in range(cells + 1)]
     triangles = []
-    for r in range(cells):
+    for r in range(len(rows) - 1):
         for c in range(cells):
             a = r * (cells + 1) + c
             b, d, e = a + 1, a + cells + 1, a + cells + 2
@@ -29,6 +30,38 @@ def needles(aspect):
         return wide * (column // 2 * (1.0 + 1.0 / aspect) + column % 2)
 
     return grid(step=step)
+
+
+BELT_ROWS = 3  # of cells: two rows of vertices have no other triangles, and weigh as little
+
+
+def belts(height, places):
+    """The grid with a belt of rows `height` times as high as an edge is long in front of each row of cells in `places`."""
+    heights = []
+    for row in range(CELLS + 1):
+        heights += places.count(row) * BELT_ROWS * [height] + [1.0]
+    heights.pop()
+    whole = sum(heights)
+    return grid(rows=[sum(heights[:row]) / whole for row in range(len(heights) + 1)])
+
+
+def split(share, height):
+    """The grid, where a `share` of the triangles, spread evenly, is cut in three by a vertex `height` times as high over
+    the middle of an edge as it is long."""
+    vertices, triangles = grid()
+    cut = []
+    for number, (a, b, c) in enumerate(triangles):
+        if math.floor((number + 1) * share) == math.floor(number * share):
+            cut.append((a, b, c))
+            continue
+        (ax, _, az), (bx, _, bz), (cx, _, cz) = vertices[a], vertices[b], vertices[c]
+        middle = [0.5 * (p + q) for p, q in zip(vertices[a], vertices[b])]
+        square_length = (bx - ax) ** 2 + (bz - az) ** 2
+        towards = height * square_length / abs((bx - ax) * (cz - az) - (bz - az) * (cx - ax))
+        vertices.append(tuple(m + towards * (p - m) for m, p in zip(middle, vertices[c])))
+        new = len(vertices) - 1
+        cut += [(a, b, new), (b, c, new), (c, a, new)]
+    return vertices, cut
 
 
 def far_away(distance):

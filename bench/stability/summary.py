@@ -5,10 +5,14 @@ holds and ours does not, and where ours is worse than no limiter. Markdown."""
 
 import argparse
 import json
+import math
 from pathlib import Path
 
 import maps
 import outcome
+
+
+MOST_LISTED = 12  # points of a map
 
 
 def is_ours(method):
@@ -17,6 +21,8 @@ def is_ours(method):
 
 def named(label, value):
     """mass ratio 100 000; time step 1/60 s; speed 3 m/s."""
+    if isinstance(value, str):
+        return f"{label} {value}"
     name, _, unit = label.removesuffix(")").partition(" (")
     number = f"1/{round(1.0 / value)}" if name == "time step" else (
         f"{value:,.0f}".replace(",", " ") if value >= 1000 else f"{value:g}")
@@ -48,6 +54,21 @@ def judged(document):
     return methods.get("apsl_defaults") or methods["apsl"]
 
 
+def unlimited(document):
+    return next(method for method in document["methods"] if method["name"] == "none")
+
+
+def stretches(document):
+    """Of the points that ours holds, the greatest length of an edge over its rest length, there and without a limiter."""
+    ours = judged(document)
+    held = [(row, column) for _, row, column in points_of(document) if ours["outcome"][row][column] == outcome.HELD]
+    if not held or "edges" not in ours:
+        return "–"
+    longest = [max(method["edges"][row][column] or math.inf for row, column in held)
+               for method in (ours, unlimited(document))]
+    return "{:.3g} ({:.3g})".format(*longest)
+
+
 def held_by_rivals_alone(document):
     ours = judged(document)
     for name, row, column in points_of(document):
@@ -65,18 +86,26 @@ def held_by_rivals_alone(document):
 
 def worse_than_none(document):
     ours = judged(document)
-    without = next(method for method in document["methods"] if method["name"] == "none")
+    without = unlimited(document)
     for name, row, column in points_of(document):
-        if ours["outcome"][row][column] == outcome.WORSE or (
-                ours["outcome"][row][column] == outcome.DIVERGED_RUN
-                and without["outcome"][row][column] != outcome.DIVERGED_RUN):
+        letter = ours["outcome"][row][column]
+        if letter == outcome.WORSE or (letter == outcome.DIVERGED_RUN
+                                       and without["outcome"][row][column] != outcome.DIVERGED_RUN):
             yield (f"{name}: ours {percent(ours['greatest'][row][column])}, "
                    f"no limiter {percent(without['greatest'][row][column])}")
 
 
+def gaining_energy(document):
+    ours = judged(document)
+    for name, row, column in points_of(document):
+        if ours["outcome"][row][column] == outcome.GAINED_ENERGY:
+            yield f"{name}: areas {percent(ours['greatest'][row][column])}"
+
+
 def table(documents):
     lines = ["| map | points | no limiter holds | ours, the defaults | ours, the paper's | ours, printed | best rival "
-             "| a rival holds, ours does not | ours worse than no limiter |", "|---|---|---|---|---|---|---|---|---|"]
+             "| a rival holds, ours does not | ours worse than no limiter | ours gains energy "
+             "| longest edge where ours holds (without a limiter) |", "|---|---|---|---|---|---|---|---|---|---|---|"]
     for document in documents:
         methods = {method["name"]: method for method in document["methods"]}
         held = {name: str(count(method, outcome.HELD)) for name, method in methods.items()}
@@ -85,9 +114,10 @@ def table(documents):
         lines.append("| " + " | ".join([
             f"[{document.get('title', 'Single cases')}](stability/{document['map']}.png)",
             str(len(points_of(document))),
-            held["none"], held.get("apsl_defaults", "–"), held["apsl"], held["apsl_printed"],
+            held["none"], held.get("apsl_defaults", "–"), held["apsl"], held.get("apsl_printed", "–"),
             "–" if best is None else f"{held[best['name']]} ({best['title']})",
-            str(len(list(held_by_rivals_alone(document)))), str(len(list(worse_than_none(document))))]) + " |")
+            str(len(list(held_by_rivals_alone(document)))), str(len(list(worse_than_none(document)))),
+            str(count(judged(document), outcome.GAINED_ENERGY)), stretches(document)]) + " |")
     return lines
 
 
@@ -95,6 +125,8 @@ def listed(documents, find):
     lines = []
     for document in documents:
         found = list(find(document))
+        if len(found) > MOST_LISTED:
+            found[MOST_LISTED - 1:] = [f"and {len(found) - MOST_LISTED + 1} more"]
         if found:
             lines.append(f"- {document.get('title', 'Single cases')}: " + "; ".join(found) + ".")
     return lines or ["None."]
@@ -104,7 +136,8 @@ def summary(folder):
     documents = [json.loads((folder / f"{name}.json").read_text()) for name in maps.NAMES]
     return "\n".join([*table(documents), "", "**A rival holds and ours does not:**", "",
                       *listed(documents, held_by_rivals_alone), "", "**Ours is worse than no limiter:**", "",
-                      *listed(documents, worse_than_none)]) + "\n"
+                      *listed(documents, worse_than_none), "", "**Ours gains energy:**", "",
+                      *listed(documents, gaining_energy)]) + "\n"
 
 
 if __name__ == "__main__":

@@ -14,7 +14,8 @@ from acceptance_case import Case, project
 
 sys.path.insert(0, str(project / "bench/stability"))
 
-import energy_gain
+import outcome
+import scene_map
 
 FIRST_FRAMES = 10      # for settling
 LONGER_EDGES = 2.0     # times the unlimited cloth's longest
@@ -26,7 +27,7 @@ def greatest(report, field, first=0):
 
 
 def run_of(report):
-    """As bench/stability/energy_gain.py takes the runs of `apsl compare`."""
+    """As bench/stability/outcome.py takes the runs of `apsl compare`."""
     return {"status": report["summary"]["status"], "start_energy": report["start_energy"],
             "greatest_energy": max(frame["energy"]["total"] for frame in report["frames"]),
             "energy": report["frames"][-1]["energy"]}
@@ -75,13 +76,13 @@ class Defaults(Case):
 
     def driven(self, name):
         scene = self.SCENES[name]
-        return energy_gain.driven(scene if isinstance(scene, dict) else json.loads((project / "scenes" / scene).read_text()))
+        return scene_map.driven(scene if isinstance(scene, dict) else json.loads((project / "scenes" / scene).read_text()))
 
     def test_motion_and_height_never_hold_more_energy_than_there_was(self):
         def judge(name, limited, _):
             if not self.driven(name):
                 highest = max(frame["energy"]["kinetic"] + frame["energy"]["gravity"] for frame in limited["frames"])
-                self.assertLessEqual(highest, limited["start_energy"]["total"] + energy_gain.ENERGY_FLOOR)
+                self.assertLessEqual(highest, limited["start_energy"]["total"] + outcome.ENERGY_FLOOR)
 
         self.judge(judge)
 
@@ -89,7 +90,7 @@ class Defaults(Case):
         def judge(name, limited, unlimited):
             if not self.driven(name):
                 runs = run_of(limited), run_of(unlimited)
-                self.assertFalse(energy_gain.gained_energy(*runs), runs)
+                self.assertFalse(outcome.gained_energy(*runs), runs)
 
         self.judge(judge)
 

@@ -4,6 +4,7 @@
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <algorithm>
+#include <string>
 
 namespace {
 
@@ -143,7 +144,14 @@ SHOWN cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_i
                             void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
     static auto* const next = real<decltype(clBuildProgram)>("clBuildProgram");
     ++calls.builds;
-    return fails() ? CL_OUT_OF_RESOURCES : next(program, count, devices, options, notify, user);
+    if (fails()) return CL_OUT_OF_RESOURCES;
+    const cl_int status = next(program, count, devices, options, notify, user);
+    std::size_t size = 0;
+    clGetProgramBuildInfo(program, devices[0], CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+    std::string log(size, '\0');
+    clGetProgramBuildInfo(program, devices[0], CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    if (log.find("warning") != std::string::npos) ++calls.warned_builds;
+    return status;
 }
 
 #define COUNT_RETAIN_AND_RELEASE(Name, type, kind)                                    \

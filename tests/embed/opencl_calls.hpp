@@ -28,6 +28,7 @@ struct OpenClCalls {
     int releases = 0;        ///< clReleaseMemObject
     int commands = 0;        ///< kernels, fills, copies, writes, markers
     int builds = 0;          ///< clBuildProgram
+    int warned_builds = 0;   ///< those of them whose log has a warning
     int binaries = 0;        ///< clCreateProgramWithBinary
     std::size_t allocated_bytes = 0;
     OpenClReferences held;
