@@ -54,8 +54,10 @@ APSL_KERNEL void filter_in_one_group(
     order_values(cloths[c], parameters[c].enabled, triangle_order, ordered_rest_areas, ordered_regularization,
                  rest_areas + rest_area_offset, regularization + regularization_offset);
     group_memory_barrier();
-    const float start_not_finite = sum_of_lanes(find_start_errors(cloths[c], walked_sub_steps(parameters[c]) > 0,
-                                                                  triangles, motion, ordered_rest_areas, start_errors));
+    const bool walks = walked_sub_steps(parameters[c]) > 0;
+    const float start_not_finite = group_sum(
+        sum_of_lanes(find_start_errors(cloths[c], walks, triangles, motion, ordered_rest_areas, start_errors)), scratch);
+    if (start_not_finite > 0.0f && get_local_id(0) == 0) stats->status = APSL_STATUS_DIVERGED;
     float capped_rms = 0.0f;
     // A cloth that is off goes round once, with no triangle.
     for (bool going_on = true; going_on;) {  // uniform: decided by sums over the group
@@ -67,7 +69,7 @@ APSL_KERNEL void filter_in_one_group(
             ordered_regularization, walked_sub_steps(parameters[c]) > 0,
             started ? start_error_left(sub_steps, walked_sub_steps(parameters[c])) : 0.0f, start_errors);
         const apsl_area_change change = area_change_in_group(sums.areas, scratch);
-        const float not_finite = group_sum(sum_of_lanes(sums.areas.not_finite) + start_not_finite, scratch);
+        const float not_finite = group_sum(sum_of_lanes(sums.areas.not_finite), scratch);
         apsl_solve solve = begin_solve_in_group(group_sum(sum_of_lanes(sums.squares), scratch),
                                                 group_sum(sum_of_lanes(sums.scaled_squares), scratch));
         const bool broken =
@@ -109,9 +111,11 @@ APSL_KERNEL void filter_in_one_group(
                                     raises_masses,
                                     raises_masses && sub_steps + 1 < parameters[c].sub_steps,
                                     states[c].greatest_mass};
-            walk_vertices(cloths[c], walking, walk, corner_offsets, corners, gradients, pressure, predicted, motion,
-                          correction);
-            displace_vertices(cloths[c], solved && !walking, corner_offsets, corners, gradients, pressure, predicted);
+            if (walking)  // uniform
+                walk_vertices(cloths[c], true, walk, corner_offsets, corners, gradients, pressure, predicted, motion,
+                              correction);
+            else
+                displace_vertices(cloths[c], solved, corner_offsets, corners, gradients, pressure, predicted);
             const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
             if (get_local_id(0) == 0) {
                 states[c].adaptive_factor =
