@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "run/commands.hpp"
+#include "run/flat_cloth.hpp"
 #include "run/frame_output.hpp"
 #include "run/input_error.hpp"
 #include "run/interruption.hpp"
@@ -49,6 +50,9 @@ std::vector<std::string> late_warnings(const Simulation& simulation, const RunRe
                            std::to_string(simulation.unconverged_spring_solves()) +
                            " steps; lower the time_step or the stiffness");
     }
+    if (report.backend != "none")
+        if (auto flat = flat_cloth_warning(simulation.cloth(), summarize(report.frames)))
+            warnings.push_back(std::move(*flat));
     return warnings;
 }
 

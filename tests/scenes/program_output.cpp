@@ -270,6 +270,21 @@ TEST_CASE("a scene whose name is no UTF-8 leaves its report all the same") {
     CHECK_THAT(read_json(report_file)["scene"].get<std::string>(), Catch::EndsWith("/sc\xef\xbf\xbdne.json"));
 }
 
+TEST_CASE("a cloth that is pushed together and cannot leave its plane is warned of, one with a little noise is not") {
+    const TemporaryFolder folder;
+    const auto run = [&](const std::string& start) {
+        const std::string scene =
+            folder.write("flat.json", R"({"mesh": {"grid": {"vertices": [17, 17], "plane": "vertical"}}, "frames": 60,
+                "integrator": {"implicit_springs": {}}, "strain_limiting": {},
+                "colliders": [{"sphere": {"center": [0, -0.9, 0], "radius": 0.3, "friction": 0.5}}])" +
+                                          start + "}");
+        return run_apsl("run " + scene);
+    };
+    CHECK_THAT(run("").errors, Catch::Contains("warning: the cloth was pushed together and never left the plane in "
+                                               "which its z is the same"));
+    CHECK_THAT(run(R"(, "start": {"random": 1e-4})").errors, !Catch::Contains("warning"));
+}
+
 TEST_CASE("a mesh in pieces that lie side by side is warned of on the screen and in the report, until it is welded") {
     const TemporaryFolder folder;
     folder.write("soup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n");
