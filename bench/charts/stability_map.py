@@ -116,7 +116,7 @@ def run(arguments):
         figure = draw_cases(document) if "cases" in document else draw_map(document)
     except (KeyError, TypeError, IndexError, ValueError) as error:
         raise ChartError(f"{options.results}: no map ({type(error).__name__}: {error})") from None
-    save_chart(figure, options.out, 110)
+    save_chart(figure, options.out, 95)
 
 
 if __name__ == "__main__":
