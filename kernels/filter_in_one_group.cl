@@ -56,7 +56,8 @@ APSL_KERNEL void filter_in_one_group(
     group_memory_barrier();
     const bool walks = walked_sub_steps(parameters[c]) > 0;
     const float start_not_finite = group_sum(
-        sum_of_lanes(find_start_errors(cloths[c], walks, triangles, motion, ordered_rest_areas, start_errors)), scratch);
+        sum_of_lanes(find_start_errors(cloths[c], walks, triangles, motion, ordered_rest_areas, start_errors)),
+        scratch);
     if (start_not_finite > 0.0f && get_local_id(0) == 0) stats->status = APSL_STATUS_DIVERGED;
     float capped_rms = 0.0f;
     // A cloth that is off goes round once, with no triangle.
