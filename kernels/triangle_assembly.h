@@ -56,7 +56,8 @@ APSL_INLINE void order_values(apsl_cloth cloth, bool active, __global const uint
 // moved since.
 #define APSL_BOUND_MARGIN 1.1f
 
-// B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|². Reference: apsl::reference::diagonal_bound.
+// B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|². Reference: apsl::reference::diagonal_bound. Written out: where LLVM unrolls it as
+// a loop, it leaves an intrinsic that Oclgrind does not have.
 APSL_INLINE lanes bounded_diagonal(apsl_triangle_geometry t, __global const uint* triangles,
                                    __global const float* vertex_bounds, uint first) {
     const lanes s0 = load_corner_values(triangles, vertex_bounds, first, 0);
