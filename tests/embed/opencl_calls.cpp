@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -52,6 +53,21 @@ cl_int enqueued(cl_event* event, const Enqueue& enqueue) {
     const cl_int status = enqueue();
     calls.held.events += event && status == CL_SUCCESS ? 1 : 0;
     return status;
+}
+
+/// Whether the build for one of the program's devices logged a warning.
+bool warned(cl_program program) {
+    cl_uint count = 0;
+    clGetProgramInfo(program, CL_PROGRAM_NUM_DEVICES, sizeof(count), &count, nullptr);
+    std::vector<cl_device_id> devices(count);
+    clGetProgramInfo(program, CL_PROGRAM_DEVICES, count * sizeof(cl_device_id), devices.data(), nullptr);
+    return std::any_of(devices.begin(), devices.end(), [program](cl_device_id device) {
+        std::size_t size = 0;
+        clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+        std::string log(size, '\0');
+        clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+        return log.find("warning") != std::string::npos;
+    });
 }
 
 cl_int counted(int& held, int change, cl_int status) {
@@ -146,11 +162,7 @@ SHOWN cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_i
     ++calls.builds;
     if (fails()) return CL_OUT_OF_RESOURCES;
     const cl_int status = next(program, count, devices, options, notify, user);
-    std::size_t size = 0;
-    clGetProgramBuildInfo(program, devices[0], CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
-    std::string log(size, '\0');
-    clGetProgramBuildInfo(program, devices[0], CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
-    if (log.find("warning") != std::string::npos) ++calls.warned_builds;
+    if (status == CL_SUCCESS && warned(program)) ++calls.warned_builds;
     return status;
 }
 
