@@ -54,19 +54,19 @@ APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global cons
     for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
         const uint first = block * APSL_LANES;
         const uint count = min((uint)APSL_LANES, cloth.vertex_count - first);
-        float entries[6 * APSL_LANES] = {0.0f}, unknown[APSL_LANES] = {0.0f}, greatest[APSL_LANES];
+        float entries[6 * APSL_LANES] = {0.0f}, gradients_around[APSL_LANES] = {0.0f}, bounds[APSL_LANES];
         for (uint v = 0; v < count; ++v) {
             const uint i = cloth.vertex_begin + first + v;
             float4 on_diagonal = (float4)(0.0f), beside = (float4)(0.0f);
-            const uint end = corner_offsets[i + 1];
-            for (uint n = corner_offsets[i]; n < end; ++n) {
-                const float4 g = corner_gradient(gradients, corners[n]);
-                const float squared_length = dot3(g, g);
-                const float4 scaled = g / fmax(squared_length, 1.0f);  // whole numbers: 0, or at least 1
-                on_diagonal += scaled * g;
-                beside += scaled.xxyw * g.yzzw;
-                unknown[v] += squared_length > 0.0f ? 0.0f : 1.0f;
+            const uint begin = corner_offsets[i], end = corner_offsets[i + 1];
+            for (uint n = begin; n < end; ++n) {
+                const float4 g = corner_gradient(gradients, corners[n]), squares = g * g;
+                // Of whole numbers: 0, or at least 1.
+                const float inverse = 1.0f / fmax(squares.x + squares.y + squares.z, 1.0f);
+                on_diagonal += inverse * squares;
+                beside += inverse * (g.xxyw * g.yzzw);
             }
+            gradients_around[v] = (float)(end - begin);
             entries[v] = on_diagonal.x;
             entries[APSL_LANES + v] = on_diagonal.y;
             entries[2 * APSL_LANES + v] = on_diagonal.z;
@@ -76,11 +76,13 @@ APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global cons
         }
         const apsl_symmetric sums = {private_lanes(entries, 0), private_lanes(entries, 1), private_lanes(entries, 2),
                                      private_lanes(entries, 3), private_lanes(entries, 4), private_lanes(entries, 5)};
-        store_private_lanes(greatest_eigenvalue(sums), greatest);
+        // A direction adds 1 to the trace, a gradient of zero nothing.
+        const lanes unknown = private_lanes(gradients_around, 0) - (sums.xx + sums.yy + sums.zz);
+        store_private_lanes(greatest_eigenvalue(sums) + fmax(unknown, (lanes)(0.0f)), bounds);
         for (uint v = 0; v < count; ++v) {
             const uint i = cloth.vertex_begin + first + v;
             const bool raised = parameters[c].raises_masses && predicted[i].w < motion[i].w;
-            vertex_bounds[i] = (raised ? APSL_RAISED_MARGIN : 1.0f) * (greatest[v] + unknown[v]);
+            vertex_bounds[i] = (raised ? APSL_RAISED_MARGIN : 1.0f) * bounds[v];
         }
     }
 }

@@ -19,17 +19,17 @@ APSL_INLINE apsl_corner_sums sums_over_corners(__global const uint* corner_offse
                                                uint i) {
     apsl_corner_sums sums;
     sums.force = (float4)(0.0f);
-    sums.stiffness = 0.0f;
+    float4 squares = (float4)(0.0f);  // by component: the sum over them is one, at the end
     const uint end = corner_offsets[i + 1];
     for (uint n = corner_offsets[i]; n < end; ++n) {
         const uint corner = corners[n], a = APSL_CORNER_TRIANGLE(corner);
         const float4 g = corner_gradient(gradients, corner);
         const float y = pressure[a];
         sums.force += y * g;
-        sums.stiffness += fmax(y, 0.0f) * gradients[a].stiffening * dot3(g, g);
+        squares += fmax(y, 0.0f) * gradients[a].stiffening * (g * g);
     }
     sums.force *= APSL_GRADIENT_UNIT;
-    sums.stiffness *= APSL_GRADIENT_UNIT * APSL_GRADIENT_UNIT;
+    sums.stiffness = (APSL_GRADIENT_UNIT * APSL_GRADIENT_UNIT) * (squares.x + squares.y + squares.z);
     return sums;
 }
 

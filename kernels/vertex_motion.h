@@ -104,7 +104,7 @@ APSL_INLINE apsl_vertex_sums predict_vertices(apsl_cloth cloth, bool active, flo
 }
 
 // The first of `walked` parts of the step: predicted = x̃ + Δt ṽ / walked, motion = (Δt ṽ, w), correction = 0. The w of
-// `correction` is the kept stiffness K.
+// `correction` is the kept stiffness K, 0 where it never was too much.
 APSL_INLINE void start_walking(apsl_cloth cloth, bool active, float time_step, int walked,
                                __global const uint* vertex_order, __global float4* predicted, __global float4* motion,
                                __global float4* correction, __global const float* velocities) {
@@ -161,21 +161,27 @@ APSL_INLINE void walk_vertices(apsl_cloth cloth, bool active, apsl_walk walk, __
         step.w = 0.0f;
         if (effective > 0.0f) {
             float4 total = correction[i];
-            float tension = 0.0f;
+            float tension = 0.0f;  // K w'
+            float4 change = (float4)(0.0f);
             if (walk.solved) {
                 const apsl_corner_sums sums = sums_over_corners(corner_offsets, corners, gradients, pressure, i);
-                tension = sums.stiffness / effective;
-                const float taken =
-                    walk.raises_masses ? share_taken(given, effective, tension, walk.greatest_mass) : 1.0f;
-                const float4 change = -taken * sqrt(2.0f * effective) * sums.force;
-                x += change;
-                step += parts * change;
-                total += parts_left * change;  // its w is K
-                motion[i] = (float4)(step.xyz, given);
+                tension = sums.stiffness;
+                change = -sqrt(2.0f * effective) * sums.force;
             }
-            if (walk.renews_masses) {
-                total.w = fmax(tension, APSL_STIFFNESS_KEPT * total.w);
-                x.w = effective_inverse_mass(given, total.w, walk.greatest_mass);
+            // Of most vertices the mass stays as given, and K, which takes a division, is of no use.
+            if (walk.raises_masses && (effective < given || is_too_stiff(tension))) {
+                const float stiffness = tension / effective;
+                change *= share_taken(given, effective, stiffness, walk.greatest_mass);
+                if (walk.renews_masses) {
+                    total.w = fmax(stiffness, APSL_STIFFNESS_KEPT * total.w);
+                    x.w = effective_inverse_mass(given, total.w, walk.greatest_mass);
+                }
+            }
+            if (walk.solved) {
+                x += change;  // its w is zero
+                step += parts * change;
+                total += parts_left * change;
+                motion[i] = (float4)(step.xyz, given);
             }
             correction[i] = total;
         }
