@@ -25,6 +25,17 @@ inline double edge_length(std::span<const double> positions, VertexPair edge) {
     return (vector_at(positions, edge[1]) - vector_at(positions, edge[0])).norm();
 }
 
+/// m, the diagonal of the box around positions in m, [3V ≥ 3].
+inline double extent(std::span<const double> positions) {
+    Eigen::Vector3d low = vector_at(positions, 0);
+    Eigen::Vector3d high = low;
+    for (std::size_t v = 0; v < positions.size() / 3; ++v) {
+        low = low.cwiseMin(vector_at(positions, v));
+        high = high.cwiseMax(vector_at(positions, v));
+    }
+    return (high - low).stableNorm();
+}
+
 /// m² from positions in m, [3V].
 inline double triangle_area(std::span<const double> positions, const Triangle& triangle) {
     const Eigen::Vector3d a = vector_at(positions, triangle[0]);

@@ -56,13 +56,25 @@ void take_out_spikes(std::span<const std::uint32_t> corners, std::vector<std::ui
     polygon.erase(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(begin));
 }
 
-void check_areas(const PolygonMesh& polygons, std::size_t face, const Mesh& mesh, std::size_t first_triangle) {
+bool names_a_vertex_twice(std::span<const std::uint32_t> corners) {
+    std::vector<std::uint32_t> sorted(corners.begin(), corners.end());
+    std::sort(sorted.begin(), sorted.end());
+    return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+}
+
+// `polygon`: the face's corners without spikes.
+void check_areas(const PolygonMesh& polygons, std::size_t face, std::span<const std::uint32_t> polygon,
+                 const Mesh& mesh, std::size_t first_triangle) {
     for (std::size_t k = first_triangle; k < mesh.triangles.size(); ++k) {
         const double area = triangle_area(mesh.positions, mesh.triangles[k]);
         if (area > 0.0 && std::isfinite(area)) continue;
         if (!(area <= 0.0)) {
             throw InputError(polygons.where(face) + "a face with an area too great for a number (" +
                              polygons.shown(face) + "); scale the mesh: \"height\" in mesh");
+        }
+        if (names_a_vertex_twice(polygon)) {
+            throw InputError(polygons.where(face) + "a face that pinches itself (" + polygons.shown(face) +
+                             "), for a vertex comes twice; cut it there in the mesh");
         }
         throw InputError(polygons.where(face) + "a face without an area, or with vertices in one place (" +
                          polygons.shown(face) + "); delete it, or merge the vertices: \"weld\" in mesh");
@@ -93,6 +105,7 @@ Flawed repeated_faces(std::vector<Side>& sides) {
 Mesh cut_polygons(PolygonMesh polygons) {
     Mesh mesh;
     mesh.positions = std::move(polygons.positions);
+    mesh.warnings = std::move(polygons.warnings);
     Flawed empty, crossing;
     std::vector<std::uint32_t> polygon;
     std::vector<Side> sides;
@@ -109,7 +122,7 @@ Mesh cut_polygons(PolygonMesh polygons) {
                              " vertices, too many to be cut here; cut it into smaller ones in the mesh");
         }
         if (cut == PolygonCut::crossing) crossing.add(face);
-        check_areas(polygons, face, mesh, first_triangle);
+        check_areas(polygons, face, polygon, mesh, first_triangle);
         for (std::size_t k = first_triangle; k < mesh.triangles.size(); ++k) {
             sides.push_back({mesh.triangles[k], face});
             std::sort(sides.back().vertices.begin(), sides.back().vertices.end());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "run/custom_filter.hpp"
+#include "run/float_range.hpp"
+#include "run/input_error.hpp"
 #include "run/opencl_filter.hpp"
 #include "run/reference_filter.hpp"
 
@@ -17,7 +19,8 @@ enum class Backend { opencl, reference };
 /// asks for a CustomFilter: who compares limiters puts one in place.
 using FilterStage = std::variant<std::monostate, OpenClFilter, ReferenceFilter, CustomFilter>;
 
-/// `device`: set for Backend::opencl. Throws InputError for a list of regularizations that does not fit the mesh.
+/// `device`: set for Backend::opencl. Throws InputError for a list of regularizations that does not fit the
+/// mesh, and for a cloth that a device cannot hold.
 inline FilterStage make_filter_stage(const Scene& scene, const ClothState& cloth, Backend backend,
                                      const std::optional<OpenClDevice>& device, bool profile) {
     if (!scene.strain_limiting) return std::monostate{};
@@ -26,6 +29,8 @@ inline FilterStage make_filter_stage(const Scene& scene, const ClothState& cloth
         throw InputError(scene.file + ": strain_limiting.regularization: expected one number or one for each of " +
                          std::to_string(cloth.topology->triangle_count()) + " triangles, got " + std::to_string(given));
     }
+    if (backend == Backend::opencl)
+        if (const auto text = beyond_float_range(cloth)) throw InputError(scene.file + ": " + *text);
     if (backend == Backend::reference) return ReferenceFilter(cloth, *scene.strain_limiting);
     return OpenClFilter(device.value(), cloth, *scene.strain_limiting, profile);
 }

@@ -254,8 +254,9 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     scene.steps_per_frame = static_cast<int>(object.integer("steps_per_frame", scene.steps_per_frame, 1, kMaxCount));
     scene.frames = static_cast<int>(object.integer("frames", scene.frames, 1, kMaxCount));
     if (object.has("integrator")) scene.integrator = parse_integrator(SceneObject(object.find("integrator")));
-    if (object.has("strain_limiting")) {
-        scene.strain_limiting = parse_strain_limiting(SceneObject(object.find("strain_limiting")), scene.time_step);
+    // null, as --set writes it, is none.
+    if (const SceneValue limiting = object.find("strain_limiting"); limiting.json && !limiting.json->is_null()) {
+        scene.strain_limiting = parse_strain_limiting(SceneObject(limiting), scene.time_step);
     }
     if (object.has("colliders")) {
         for (const SceneValue& collider : object.find("colliders").entries()) {

@@ -4,9 +4,11 @@
 #include "pipeline/geometry.hpp"
 #include "run/weld.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -32,14 +34,20 @@ std::vector<double> places(const ClothState& cloth) {
     return positions;
 }
 
-double extent(std::span<const double> positions) {
-    Eigen::Vector3d low = vector_at(positions, 0);
-    Eigen::Vector3d high = low;
-    for (std::size_t v = 0; v < positions.size() / 3; ++v) {
-        low = low.cwiseMin(vector_at(positions, v));
-        high = high.cwiseMax(vector_at(positions, v));
+// m; infinite where all edges have length 0.
+double shortest_edge(const ClothState& cloth) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const VertexPair& edge : cloth.topology->edges()) {
+        const double length = edge_length(cloth.rest_positions, edge);
+        if (length > 0.0) shortest = std::min(shortest, length);
     }
-    return (high - low).stableNorm();
+    return shortest;
+}
+
+// The next power of ten, unless that would close edges too.
+double weld_distance(double distance, double shortest) {
+    const double round = std::pow(10.0, std::ceil(std::log10(distance)));
+    return round < shortest ? round : distance;
 }
 
 }  // namespace
@@ -68,14 +76,15 @@ Pieces pieces_of(const ClothState& cloth) {
 
 std::optional<std::string> coincidence_warning(const ClothState& cloth, const Pieces& pieces) {
     const std::vector<double> positions = places(cloth);
-    const double distance = kOnePlace * extent(positions);
+    const double shortest = shortest_edge(cloth);
+    const double distance = std::min(kOnePlace * extent(positions), 0.5 * shortest);
     if (!(distance > 0.0) || !std::isfinite(distance)) return {};
     const std::vector<std::uint32_t> first = first_within(positions, distance);
     std::size_t coincident = 0;
     for (std::size_t v = 0; v < first.size(); ++v) coincident += first[v] != v;
     if (coincident == 0) return {};
-    char suggestion[32];  // the next power of ten
-    std::snprintf(suggestion, sizeof suggestion, "%.0e", std::pow(10.0, std::ceil(std::log10(distance))));
+    char suggestion[32];
+    std::snprintf(suggestion, sizeof suggestion, "%.0e", weld_distance(distance, shortest));
     std::string text = "vertices in the place of another: " + std::to_string(coincident) + "; the cloth is in " +
                        std::to_string(pieces.count) + (pieces.count == 1 ? " piece" : " pieces, ");
     if (pieces.count > 1) text += std::to_string(pieces.without_pin) + " of them without a pin,";

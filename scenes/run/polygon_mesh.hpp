@@ -22,6 +22,7 @@ struct PolygonMesh {
     std::vector<std::int64_t> numbers;    ///< of the corners' vertices, as the file writes them
     std::vector<std::uint32_t> vertices;  ///< the same, counted from 0
     std::vector<Face> faces;              ///< one after the other in `vertices`
+    std::vector<std::string> warnings;    ///< of what was left out, one line each, with the file's name
 
     std::size_t vertex_count() const { return positions.size() / 3; }
     std::span<const std::uint32_t> corners(std::size_t face) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/read_mesh.hpp"
 
+#include "pipeline/geometry.hpp"
 #include "run/byte_order_mark.hpp"
 #include "run/cut_polygons.hpp"
 #include "run/input_error.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -31,6 +33,12 @@ void scale_to_height(PolygonMesh& mesh, double height) {
     for (double& coordinate : mesh.positions) coordinate *= scale;
 }
 
+std::string shown(double length) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", length);
+    return text;
+}
+
 }  // namespace
 
 Mesh read_mesh(const MeshFile& source) {
@@ -47,10 +55,18 @@ Mesh read_mesh(const MeshFile& source) {
     if (polygons.faces.empty()) throw InputError(file + ": has no faces");
     if (source.height) scale_to_height(polygons, *source.height);
     std::vector<std::uint32_t> welded_to;
+    const double across = extent(polygons.positions);
     if (source.weld > 0.0) welded_to = weld(polygons, source.weld);
     Mesh mesh = cut_polygons(std::move(polygons));
     mesh.welded_to = std::move(welded_to);
-    if (mesh.triangles.empty()) throw InputError(file + ": has no faces that enclose anything");
+    if (mesh.triangles.empty()) {
+        std::string what = file + ": has no faces that enclose anything";
+        if (source.weld > 0.0) {
+            what += " once vertices within mesh.weld, " + shown(source.weld) + " m, are one; the mesh extends over " +
+                    shown(across) + " m";
+        }
+        throw InputError(what);
+    }
     return mesh;
 }
 

@@ -4,8 +4,10 @@
 #include "run/input_error.hpp"
 #include "run/words.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 
 namespace apsl::scenes {
 namespace {
@@ -72,13 +74,38 @@ void add_vertex(PolygonMesh& mesh, const Statement& statement) {
     }
 }
 
-// Corners are v, v/vt, v//vn or v/vt/vn: only v is looked at. Counted from 1, or back from the last vertex before the
+// What other programs write beside vertices and faces, and this one passes over.
+constexpr std::string_view kOtherKeys[] = {
+    "vt",     "vn",    "vp",   "p",     "l",        "g",        "s",    "mg",     "o",      "usemtl",     "mtllib",
+    "cstype", "deg",   "bmat", "step",  "curv",     "curv2",    "surf", "parm",   "trim",   "hole",       "scrv",
+    "sp",     "end",   "con",  "bevel", "c_interp", "d_interp", "lod",  "usemap", "maplib", "shadow_obj", "trace_obj",
+    "ctech",  "stech", "call", "csh",   "bsp",      "bzp",      "cdc",  "cdp",    "res"};
+
+bool is_other_key(std::string_view key) {
+    return key.empty() || std::find(std::begin(kOtherKeys), std::end(kOtherKeys), key) != std::end(kOtherKeys);
+}
+
+// v, v/vt, v//vn or v/vt/vn: only v counts, but the others are numbers too.
+bool parse_corner(std::string_view corner, std::int64_t& vertex) {
+    for (int part = 0; part < 3; ++part) {
+        const std::size_t slash = corner.find('/');
+        std::int64_t number = 0;
+        const std::string_view word = corner.substr(0, slash);
+        if (!(word.empty() && part > 0) && !parse_number(word, number)) return false;
+        if (part == 0) vertex = number;
+        if (slash == std::string_view::npos) return vertex != 0;
+        corner.remove_prefix(slash + 1);
+    }
+    return false;
+}
+
+// Counted from 1, or back from the last vertex before the
 // line.
 void add_face(PolygonMesh& mesh, const Statement& statement) {
     std::string_view corners = statement.rest;
     for (std::string_view corner = take_word(corners); !corner.empty(); corner = take_word(corners)) {
         std::int64_t number = 0;
-        if (!parse_number(corner.substr(0, corner.find('/')), number) || number == 0) {
+        if (!parse_corner(corner, number)) {
             refuse(mesh.file, statement,
                    "expected vertex numbers from 1, or from -1 back, after f, got " + quoted(statement.line));
         }
@@ -100,10 +127,21 @@ PolygonMesh read_obj(std::string_view contents, const std::string& file) {
     mesh.file = file;
     mesh.has_lines = true;
     Statements statements(contents);
+    std::size_t unknown = 0;
+    std::string first_unknown;
     while (!statements.at_end()) {
         const Statement statement = statements.take();
-        if (statement.key == "v") add_vertex(mesh, statement);
-        if (statement.key == "f") add_face(mesh, statement);
+        if (statement.key == "v") {
+            add_vertex(mesh, statement);
+        } else if (statement.key == "f") {
+            add_face(mesh, statement);
+        } else if (!is_other_key(statement.key) && unknown++ == 0) {
+            first_unknown = "line " + std::to_string(statement.number) + ", " + quoted(statement.line);
+        }
+    }
+    if (unknown > 0) {
+        mesh.warnings.push_back(file + ": lines that OBJ does not have: " + std::to_string(unknown) +
+                                ", the first in " + first_unknown + "; they are left out");
     }
     check_faces(mesh);  // at the end, for a face may come before its vertices
     return mesh;

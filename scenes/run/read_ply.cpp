@@ -19,16 +19,31 @@ namespace {
 /// Numbers one after the other, as the header says they are written.
 class PlyNumbers {
 public:
-    PlyNumbers(PlyFormat format, std::string_view contents, const std::string& file)
-        : format_(format), rest_(contents), file_(file) {}
+    /// `whole`: the file, of which `contents` is what follows the header.
+    PlyNumbers(PlyFormat format, std::string_view contents, std::string_view whole, const std::string& file)
+        : format_(format), whole_(whole), rest_(contents), file_(file) {}
 
     double next(const PlyType& type) { return format_ == PlyFormat::ascii ? next_word() : next_bytes(type); }
 
-    /// Text has a line end behind its last number and nothing else; who counted wrong left faces out.
+    /// Behind the last number there is at most a line end; who counted wrong left faces out.
     void check_end() {
-        const std::string_view word = format_ == PlyFormat::ascii ? take_word(rest_, kBlanks) : std::string_view{};
-        if (!word.empty()) refuse_ply(file_, "goes on behind what its header counts, with " + quoted(word));
+        const std::size_t left = rest_.size();
+        const std::string_view word = take_word(rest_, kBlanks);
+        if (word.empty()) return;
+        if (format_ == PlyFormat::ascii) refuse("goes on behind what its header counts, with " + quoted(word));
+        refuse("goes on behind what its header counts, for " + std::to_string(left) + " bytes");
     }
+
+    /// "mesh.ply:7", with the line of the number taken last where the file is text; "mesh.ply" where not.
+    std::string where() const {
+        if (format_ != PlyFormat::ascii) return file_;
+        std::string_view before = whole_.substr(0, whole_.size() - rest_.size());
+        std::size_t line = 0;
+        for (; !before.empty(); ++line) take_line(before);
+        return file_ + ":" + std::to_string(line);
+    }
+
+    [[noreturn]] void refuse(const std::string& what) const { refuse_ply(where(), what); }
 
     /// The least that a number takes: what bounds every count by the size of the file.
     std::size_t least_bytes(const PlyType& type) const { return format_ == PlyFormat::ascii ? 1 : type.size; }
@@ -40,13 +55,13 @@ private:
     double next_word() {
         const std::string_view word = take_word(rest_, kBlanks);
         double number = 0.0;
-        if (word.empty()) refuse_ply(file_, "ends before its last number");
-        if (!parse_number(word, number)) refuse_ply(file_, "expected a number, got " + quoted(word));
+        if (word.empty()) refuse("ends before its last number");
+        if (!parse_number(word, number)) refuse("expected a number, got " + quoted(word));
         return number;
     }
 
     double next_bytes(const PlyType& type) {
-        if (rest_.size() < type.size) refuse_ply(file_, "ends before its last number");
+        if (rest_.size() < type.size) refuse("ends before its last number");
         unsigned char bytes[8];
         std::memcpy(bytes, rest_.data(), type.size);
         rest_.remove_prefix(type.size);
@@ -67,24 +82,24 @@ private:
     }
 
     PlyFormat format_;
-    std::string_view rest_;
+    std::string_view whole_, rest_;
     const std::string& file_;
 };
 
-std::size_t list_length(PlyNumbers& numbers, const PlyProperty& property, const std::string& file) {
+std::size_t list_length(PlyNumbers& numbers, const PlyProperty& property) {
     const double length = numbers.next(*property.count);
     if (!(length >= 0.0) || length != std::floor(length) ||
         length * static_cast<double>(numbers.least_bytes(property.type)) > static_cast<double>(numbers.bytes_left()))
-        refuse_ply(file, "a list is longer than the file, or has no length");
+        numbers.refuse("a list is longer than the file, or has no length");
     return static_cast<std::size_t>(length);
 }
 
-void skip(PlyNumbers& numbers, const PlyProperty& property, const std::string& file) {
-    const std::size_t count = property.count ? list_length(numbers, property, file) : 1;
+void skip(PlyNumbers& numbers, const PlyProperty& property) {
+    const std::size_t count = property.count ? list_length(numbers, property) : 1;
     for (std::size_t n = 0; n < count; ++n) numbers.next(property.type);
 }
 
-void read_vertex(PlyNumbers& numbers, const PlyElement& element, const std::string& file, PolygonMesh& mesh) {
+void read_vertex(PlyNumbers& numbers, const PlyElement& element, PolygonMesh& mesh) {
     double place[3];
     std::fill(place, place + 3, std::numeric_limits<double>::quiet_NaN());
     for (const PlyProperty& property : element.properties) {
@@ -92,39 +107,58 @@ void read_vertex(PlyNumbers& numbers, const PlyElement& element, const std::stri
         if (is_coordinate && !property.count)
             place[property.name[0] - 'x'] = numbers.next(property.type);
         else
-            skip(numbers, property, file);
+            skip(numbers, property);
     }
     for (const double coordinate : place)
         if (!std::isfinite(coordinate))
-            throw InputError(file + ": vertex " + std::to_string(mesh.vertex_count()) +
+            throw InputError(numbers.where() + ": vertex " + std::to_string(mesh.vertex_count()) +
                              ": expected three finite coordinates");
     mesh.positions.insert(mesh.positions.end(), place, place + 3);
 }
 
-std::vector<std::int64_t> read_indices(PlyNumbers& numbers, const PlyElement& element, const std::string& file) {
+bool is_index_list(const PlyProperty& property) {
+    return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+std::vector<std::int64_t> read_indices(PlyNumbers& numbers, const PlyElement& element) {
     std::vector<std::int64_t> indices;
-    bool found = false;
     for (const PlyProperty& property : element.properties) {
-        if (!property.count || (property.name != "vertex_indices" && property.name != "vertex_index")) {
-            skip(numbers, property, file);
+        if (!is_index_list(property)) {
+            skip(numbers, property);
             continue;
         }
-        found = true;
-        indices.resize(list_length(numbers, property, file));
+        indices.resize(list_length(numbers, property));
         for (std::int64_t& vertex : indices) {
             const double index = numbers.next(property.type);
             if (!(std::abs(index) <= 0x1p32) || index != std::floor(index))
-                refuse_ply(file, "a face's vertex is no whole number of 32 bits");
+                numbers.refuse("a face's vertex is no whole number of 32 bits");
             vertex = static_cast<std::int64_t>(index);
         }
     }
-    if (!found) refuse_ply(file, element.name + " without a list vertex_indices");
     return indices;
 }
 
 void add_face(const std::vector<std::int64_t>& indices, PolygonMesh& mesh) {
     for (const std::int64_t vertex : indices) mesh.add_corner(vertex, vertex);
     mesh.end_face(mesh.faces.size());
+}
+
+bool has_property(const PlyElement& element, const char* name) {
+    return std::any_of(element.properties.begin(), element.properties.end(),
+                       [name](const PlyProperty& property) { return !property.count && property.name == name; });
+}
+
+// Before a number is read.
+void check_properties(const PlyHeader& header, const std::string& file) {
+    for (const PlyElement& element : header.elements) {
+        const bool has_corners = std::any_of(element.properties.begin(), element.properties.end(), is_index_list);
+        if (element.count == 0) continue;
+        if ((element.name == "face" || element.name == "tristrips") && !has_corners)
+            refuse_ply(file, element.name + " without a list vertex_indices");
+        for (const char* axis : {"x", "y", "z"})
+            if (element.name == "vertex" && !has_property(element, axis))
+                refuse_ply(file, std::string("vertex without a property ") + axis);
+    }
 }
 
 // Every other triangle is turned round. Those that name a vertex twice only lead the strip on.
@@ -144,24 +178,29 @@ void add_strips(const std::vector<std::int64_t>& indices, PolygonMesh& mesh) {
 }  // namespace
 
 PolygonMesh read_ply(std::string_view contents, const std::string& file) {
+    const std::string_view whole = contents;
     const PlyHeader header = take_ply_header(contents, file);
-    PlyNumbers numbers(header.format, contents, file);
+    check_properties(header, file);
+    PlyNumbers numbers(header.format, contents, whole, file);
     const bool has_faces = std::any_of(header.elements.begin(), header.elements.end(), [](const PlyElement& element) {
         return element.name == "face" && element.count > 0;
     });
     PolygonMesh mesh;
     mesh.file = file;
     for (const PlyElement& element : header.elements) {
+        if (element.name == "tristrips" && element.count > 0 && has_faces)
+            mesh.warnings.push_back(file + ": triangle strips beside faces: " + std::to_string(element.count) +
+                                    "; they are left out, as the same surface once more");
         // An element without properties takes no room in the file: its count bounds nothing and is not gone through.
         for (std::uint64_t n = 0; n < element.count && !element.properties.empty(); ++n) {
             if (element.name == "vertex")
-                read_vertex(numbers, element, file, mesh);
+                read_vertex(numbers, element, mesh);
             else if (element.name == "face")
-                add_face(read_indices(numbers, element, file), mesh);
+                add_face(read_indices(numbers, element), mesh);
             else if (element.name == "tristrips" && !has_faces)
-                add_strips(read_indices(numbers, element, file), mesh);
+                add_strips(read_indices(numbers, element), mesh);
             else
-                for (const PlyProperty& property : element.properties) skip(numbers, property, file);
+                for (const PlyProperty& property : element.properties) skip(numbers, property);
         }
     }
     numbers.check_end();

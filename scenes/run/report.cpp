@@ -156,6 +156,10 @@ nlohmann::ordered_json to_json(const RunReport& report) {
          {{"count", report.light.count},
           {"lightest", report.light.lightest},
           {"share_of_median_mass", report.light.share_of_median}}},
+        {"cap_triangles",
+         {{"count", report.caps.count},
+          {"flattest", report.caps.flattest},
+          {"height_over_longest_edge", report.caps.height}}},
         {"stages", report.stages},
         {"device_bytes", report.device_bytes},
         {"start_energy", to_json(report.start_energy)}};

@@ -3,6 +3,7 @@
 
 #include "pipeline/energy.hpp"
 #include "pipeline/over_stretch.hpp"
+#include "run/cap_triangles.hpp"
 #include "run/light_vertices.hpp"
 #include "run/pieces.hpp"
 
@@ -84,6 +85,7 @@ struct RunReport {
     std::size_t triangles = 0;
     Pieces pieces;
     LightVertices light;
+    CapTriangles caps;
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step
     std::size_t device_bytes = 0;
     Energy start_energy;  ///< before the first step

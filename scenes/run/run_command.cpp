@@ -107,6 +107,7 @@ int run_command(const RunOptions& options) {
     std::vector<std::string> warnings = cloth.warnings;
     const Pieces pieces = cloth.pieces;
     const LightVertices light = cloth.light;
+    const CapTriangles caps = cloth.caps;
     std::optional<OpenClDevice> device;
     if (scene.strain_limiting && options.backend == Backend::opencl) device = choose_opencl_device(options.device);
     if (options.out) make_writable_folder(*options.out);
@@ -123,6 +124,7 @@ int run_command(const RunOptions& options) {
     RunReport report = describe(options, simulation);
     report.pieces = pieces;
     report.light = light;
+    report.caps = caps;
     const bool complete = simulate(simulation, scene.frames, output, report);
     if (!complete && !report.breakdown) {
         std::fprintf(stderr, "interrupted after %zu of %d frames; no report is written\n", report.frames.size(),

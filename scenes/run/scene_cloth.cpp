@@ -108,6 +108,8 @@ SceneCloth make_scene_cloth(const Scene& scene) {
         }
         cloth.light = light_vertices(cloth.state);
         if (const auto warning = light_vertices_warning(cloth.light)) cloth.warnings.push_back(name + ": " + *warning);
+        cloth.caps = cap_triangles(cloth.state);
+        if (const auto warning = cap_triangles_warning(cloth.caps)) cloth.warnings.push_back(name + ": " + *warning);
         note_start_inside(scene, cloth.state, cloth.warnings);
     } catch (const Error& error) {
         throw InputError(name + ": " + error.what());

@@ -3,6 +3,7 @@
 
 #include "pipeline/cloth_state.hpp"
 #include "pipeline/pins.hpp"
+#include "run/cap_triangles.hpp"
 #include "run/light_vertices.hpp"
 #include "run/pieces.hpp"
 #include "run/scene.hpp"
@@ -18,6 +19,7 @@ struct SceneCloth {
     std::vector<PinGroup> pins;
     Pieces pieces;
     LightVertices light;
+    CapTriangles caps;
     std::vector<std::string> warnings;  ///< one line each, with what to do
 };
 

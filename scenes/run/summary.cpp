@@ -22,6 +22,12 @@ std::string joined(const std::vector<std::string>& names) {
     return text.empty() ? "gravity alone" : text;
 }
 
+// Of a cap no mass is too small.
+std::string raised_masses_advice(const RunReport& report) {
+    const bool caps_alone = report.light.count == 0 && report.caps.count > 0;
+    return caps_alone ? cap_triangles_advice(report.caps) : light_vertices_advice(report.light);
+}
+
 }  // namespace
 
 std::string summary_text(const RunReport& report) {
@@ -57,7 +63,7 @@ std::string summary_text(const RunReport& report) {
             "filter "
             "raised their mass up to %.3g times: %s\n",
             summary.raised_vertices, report.vertices, lightest_text(report.light).c_str(), summary.greatest_mass_ratio,
-            light_vertices_advice(report.light).c_str());
+            raised_masses_advice(report).c_str());
     }
     if (summary.worsened) {
         text += format(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/pins.hpp"
 #include "run/commands.hpp"
+#include "run/float_range.hpp"
 #include "run/parse_scene.hpp"
 #include "run/scene_cloth.hpp"
 #include "run/simulation.hpp"
@@ -26,6 +27,8 @@ int validate_command(const std::filesystem::path& file, const std::vector<std::s
     std::printf("  pins       %zu vertices in %zu groups\n", pinned_vertices(cloth.pins).size(), cloth.pins.size());
     std::printf("  time       %d frames of %d steps of %.4g s\n", scene.frames, scene.steps_per_frame, scene.time_step);
     std::vector<std::string> warnings = cloth.warnings;
+    if (const auto text = beyond_float_range(cloth.state); text && scene.strain_limiting)
+        warnings.push_back(scene.file + ": " + *text);
     // Without a filter stage: validating needs no device.
     const Simulation simulation(scene, std::move(cloth), std::monostate{}, false);
     std::printf("  stages    ");

@@ -33,10 +33,13 @@ inline std::string_view take_word(std::string_view& rest, std::string_view blank
     return word;
 }
 
-/// For messages: in quotation marks, and not all of a megabyte.
+/// For messages: in quotation marks, without control characters, and not all of a megabyte.
 inline std::string quoted(std::string_view text) {
     std::string shown = "\"";
-    shown.append(text.substr(0, 60));
+    for (const char letter : text.substr(0, 60)) {
+        const auto code = static_cast<unsigned char>(letter);
+        shown += code < 0x20 || code == 0x7f ? '?' : letter;
+    }
     return shown.append(text.size() > 60 ? "...\"" : "\"");
 }
 

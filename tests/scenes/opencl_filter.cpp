@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/opencl_filter.hpp"
 
+#include "run/filter_stage.hpp"
 #include "run/fixed_sequence.hpp"
 #include "run/parse_scene.hpp"
 #include "run/scene_cloth.hpp"
@@ -48,6 +49,8 @@ TEST_CASE("what 32 bits do not hold is refused before it goes to the device") {
     const auto [mesh, message] = GENERATE(table<std::string, std::string>({
         {R"({"grid": {"vertices": [2, 2], "size": [1e30, 1e30]}})",
          "the rest area (m²) of triangle 0 is 5e+59, beyond the 32 bits"},
+        {R"({"grid": {"vertices": [2, 2], "size": [1e10, 1e10]}})",
+         "the rest area (m²) of triangle 0 is 5e+19, beyond the 32 bits"},
         {R"({"grid": {"vertices": [2, 2], "size": [1e-30, 1e-30]}})", "the rest area (m²) of triangle 0 is 5e-61"},
         {R"({"grid": {"vertices": [2, 2], "size": [2e-19, 2e-19]}})", "the inverse mass (1/kg) of vertex 0 is"},
         {R"({"grid": {"vertices": [2, 2], "size": [1e60, 1e-60]}})", "a coordinate (m) of vertex 0 is -5e+59, beyond"},
@@ -55,6 +58,7 @@ TEST_CASE("what 32 bits do not hold is refused before it goes to the device") {
     const Scene scene = parse(mesh);
     const ClothState cloth = make_scene_cloth(scene).state;
     const OpenClDevice device = choose_opencl_device({});
-    CHECK_THAT(input_error_of([&] { OpenClFilter(device, cloth, *scene.strain_limiting, false); }),
-               Catch::StartsWith(message));
+    CHECK_THAT(input_error_of([&] { make_filter_stage(scene, cloth, Backend::opencl, device, false); }),
+               Catch::StartsWith("scene.json: " + message));
+    CHECK(std::holds_alternative<ReferenceFilter>(make_filter_stage(scene, cloth, Backend::reference, {}, false)));
 }

@@ -44,6 +44,7 @@ TEST_CASE("every key but mesh has a default, and what is not named is not there"
     CHECK(std::holds_alternative<NoIntegrator>(scene.integrator));
     CHECK_FALSE(scene.strain_limiting.has_value());
     CHECK(scene.colliders.empty());
+    CHECK_FALSE(parse(R"({"mesh": {"grid": {}}, "strain_limiting": null})").strain_limiting.has_value());
 }
 
 TEST_CASE("a stage that is named without values takes the defaults of the stage") {

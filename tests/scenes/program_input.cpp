@@ -67,7 +67,8 @@ TEST_CASE("wrong meshes are refused in one line") {
     folder.write("mesh.obj", kCorners + "v 2 0 0\nf 1 2 4\n");
     check_refused("run " + scene, "mesh.obj:5: a face without an area");
     const std::string ply = folder.write("nan.ply", ply_text(3, 1, "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"));
-    check_refused("run " + scene + " --set mesh.file=" + ply, "nan.ply: vertex 1: expected three finite coordinates");
+    check_refused("run " + scene + " --set mesh.file=" + ply,
+                  "nan.ply:11: vertex 1: expected three finite coordinates");
 }
 
 TEST_CASE("regularizations that do not fit the mesh are refused in one line") {

@@ -65,6 +65,9 @@ TEST_CASE("OBJ: what is wrong is named with its line and the file's own numbers"
         {corners + "f 1 2 -9223372036854775808\n", ":4: vertex -9223372036854775808 is out of range"},
         {corners + "f 1 2 99999999999999999999\n", ":4: expected vertex numbers from 1"},
         {corners + "f 1 2 3.0\n", ":4: expected vertex numbers from 1"},
+        {corners + "f 1/a 2 3\n", ":4: expected vertex numbers from 1"},
+        {corners + "f 1/1/1/1 2 3\n", ":4: expected vertex numbers from 1"},
+        {corners + "v 2 0 0\nv 2 1 0\nf 1 2 3 1 4 5 1 3\n", ":6: a face that pinches itself (line 6, 1 2 3 1"},
         {corners + "\nv 2 0 \\\n0\nf 1 2 \\\n-1\n",
          ":7: a face without an area, or with vertices in one place (line 7, 1 2 -1)"},
         {corners + "v 0 0 -0\nf 1 2 3 4\n",
@@ -105,25 +108,33 @@ TEST_CASE("PLY in binary, with properties that do not matter here") {
     const Mesh mesh = read_mesh(folder.write("quad.PLY", contents));
     CHECK(mesh.positions == positions);
     CHECK(mesh.triangles == kFanOfFour);
+    CHECK(read_mesh(folder.write("line_end.ply", contents + "\r\n")).triangles == kFanOfFour);
+    const std::string longer = folder.write("longer.ply", contents + contents.substr(contents.size() - 17));
+    CHECK(error_of(longer) ==
+          longer + ": not a readable PLY mesh: goes on behind what its header counts, for 17 bytes");
 }
 
 TEST_CASE("PLY: what is wrong is named with its vertex or face") {
     const TemporaryFolder folder;
     const std::string corners = "0 0 0\n1 0 0\n1 1 0\n";
     const auto [contents, message] = GENERATE_COPY(table<std::string, std::string>({
-        {ply_text(3, 1, "0 0 0\n1 nan 0\n1 1 0\n3 0 1 2\n"), ": vertex 1: expected three finite coordinates"},
+        {ply_text(3, 1, "0 0 0\n1 nan 0\n1 1 0\n3 0 1 2\n"), ":11: vertex 1: expected three finite coordinates"},
         {ply_text(3, 1, corners + "3 0 1 7\n"), ": face 0: vertex 7 is out of range, the file has 3 vertices"},
         {ply_text(3, 1, corners + "3 0 1 -1\n"), ": face 0: vertex -1 is out of range"},
         {ply_text(3, 1, corners + "3 0 1 1\n"), ": has no faces that enclose anything"},
         {ply_text(4, 1, corners + "2 0 0\n3 0 1 3\n"), ": face 0: a face without an area"},
-        {ply_text(3, 1, corners + "3 0 1 2\n3 0 2 1\n"), ": not a readable PLY mesh: goes on behind what its header"},
+        {ply_text(3, 1, corners + "3 0 1 2\n3 0 2 1\n"),
+         ":14: not a readable PLY mesh: goes on behind what its header"},
         {"ply\nformat ascii 1.0\nelement face 1\nproperty list int int vertices\nend_header\n3 0 1 2\n",
          ": not a readable PLY mesh: face without a list vertex_indices"},
+        {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty list int int y\nend_header\n1\n2\n3\n",
+         ": not a readable PLY mesh: vertex without a property y"},
         {"plyer\nformat ascii 1.0\n", ": not a readable PLY mesh: expected ply in the first line"},
         {ply_text(3, 1, corners + "2 0 1\n"), ": face 0: 2 vertices, expected at least 3"},
-        {ply_text(3, 1, "0 0 zero\n1 0 0\n1 1 0\n3 0 1 2\n"), ": not a readable PLY mesh"},
+        {ply_text(3, 1, "0 0 0\n1 0 zero\n1 1 0\n3 0 1 2\n"),
+         ":11: not a readable PLY mesh: expected a number, got \"zero\""},
         {ply_text(0, 0, ""), ": has no vertices"},
-        {ply_text(3, 1, corners + "3 0 1 1.5\n"), ": not a readable PLY mesh: a face's vertex is no whole number"},
+        {ply_text(3, 1, corners + "3 0 1 1.5\n"), ":13: not a readable PLY mesh: a face's vertex is no whole number"},
         {"", ": not a readable PLY mesh"},
         {"v 0 0 0\n", ": not a readable PLY mesh"},
     }));
@@ -154,7 +165,7 @@ TEST_CASE("PLY: counts that the file cannot hold are refused before memory is as
     CHECK_THAT(error_of(folder.write("vertices.ply", vertices)), Catch::Contains("ends before its last number"));
     const std::string header =
         "ply\nformat binary_big_endian 1.0\nelement nothing 18446744073709551615\nelement vertex 1\n"
-        "property list int char x\nend_header\n";
+        "property list int char n\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
     CHECK_THAT(error_of(folder.write("negative.ply", header + "\xff\xff\xff\xff")),
                Catch::Contains("or has no length"));
 }
@@ -256,6 +267,19 @@ TEST_CASE("vertices that a face names twice: closed polygons and spikes are read
                                          "1, the first in face 1, 0 1 0; they are left out"});
 }
 
+TEST_CASE("OBJ: lines of another format are warned of, those that OBJ has are not") {
+    const TemporaryFolder folder;
+    const std::string face = "f 1 2 3 4\n";
+    const std::string known = "o a\ng b\ns off\nusemtl c\nvp 0 0\nl 1 2\np 1\nlod 1\n\n";
+    CHECK(read_mesh(folder.write("known.obj", kSquare + known + face)).warnings.empty());
+    const std::string file =
+        folder.write("unknown.obj", kSquare + face + "F 1 2 3\nfoo bar\n" + std::string("\0 f\n", 4));
+    const Mesh mesh = read_mesh(file);
+    CHECK(mesh.triangles == kFanOfFour);
+    CHECK(mesh.warnings == std::vector<std::string>{file + ": lines that OBJ does not have: 3, the first in line 6, "
+                                                           "\"F 1 2 3\"; they are left out"});
+}
+
 TEST_CASE("faces that come twice, on either side, are warned of") {
     const TemporaryFolder folder;
     const std::string file = folder.write("twosided.obj", kSquare + "f 1 2 3 4\nf 4 1 3\nf 3 2 1\nf 1 2 4\n");
@@ -283,6 +307,10 @@ TEST_CASE("PLY: triangle strips turn every other triangle round, -1 begins anew,
         "both.ply", header + strips + "element face 1\nproperty list uchar int vertex_index\nend_header\n" + points +
                         "3 0 1 3\n3 1 2 3\n3 0 1 2\n"));
     CHECK(faces.triangles == std::vector<Triangle>{{0, 1, 2}});
+    REQUIRE(faces.warnings.size() == 1);
+    CHECK_THAT(faces.warnings[0],
+               Catch::EndsWith("both.ply: triangle strips beside faces: 2; they are left out, as the "
+                               "same surface once more"));
     const std::string bad = folder.write("bad.ply", header + strips + "end_header\n" + points + "3 0 1 2\n3 0 1 -2\n");
     CHECK_THAT(error_of(bad), Catch::StartsWith(bad + ": face 1: vertex -2 is out of range"));
 }
@@ -293,7 +321,8 @@ TEST_CASE(
     const Mesh text = read_mesh(folder.write(
         "text.ply",
         "ply \t\nformat ascii 1.0 \nelement vertex 3 \nproperty int64 x\nproperty double y\nproperty double z\n"
-        "element face 1\nproperty list uint64 int64 vertex_indices\nend_header  \n-7 1e-400 -1e-400\n1 0 4e-320\n1 1 "
+        "element face 1\nproperty list uint64 int64 vertex_indices\nend_header  \n-7 1e-400 -1e-400\n1 0 4e-320\n1 "
+        "1 "
         "0\n3 0 1 2"));
     CHECK(text.positions == std::vector<double>{-7, 0, 0, 1, 0, 4e-320, 1, 1, 0});
 
@@ -325,4 +354,8 @@ TEST_CASE("a weld makes one vertex of those in one place, and drops what it clos
     CHECK_THAT(mesh.warnings[0], Catch::Contains("the first in line 10, 1 7 2"));
     CHECK_THAT(input_error_of([&] { scenes::read_mesh({.file = file, .height = {}, .weld = 0.0}); }),
                Catch::StartsWith(file + ":10: a face without an area"));
+    CHECK(input_error_of([&] { scenes::read_mesh({.file = file, .height = {}, .weld = 5.0}); }) ==
+          file +
+              ": has no faces that enclose anything once vertices within mesh.weld, 5 m, are one; the mesh extends "
+              "over 2.83 m");
 }

@@ -170,6 +170,13 @@ TEST_CASE("pieces that are meant to be apart are counted, not warned of; an open
                Catch::Contains("in the place of another: 1; the cloth is in 1 piece and"));
 }
 
+TEST_CASE("vertices nearer to each other than a millionth of the cloth are not in one place where edges are as short") {
+    const TemporaryFolder folder;
+    const std::string far = folder.write("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1e9 1e9 0\nf 1 2 3\nf 2 4 3\n");
+    for (const std::string& warning : cloth_of_file(far).warnings)
+        CHECK_THAT(warning, !Catch::Contains("in the place of another"));
+}
+
 TEST_CASE("a cloth that starts inside of a collider is warned of") {
     const std::string grid =
         R"({"mesh": {"grid": {"vertices": [5, 3], "size": [4, 2]}}, "pins": [{"vertices": [7]}], )";

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "run/cap_triangles.hpp"
+
+#include "pipeline/geometry.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace apsl::scenes {
+namespace {
+
+// Of the longest edge. With a shorter edge the triangle is a needle, whose light vertices are told of.
+constexpr double kShortEdge = 0.1;
+
+std::array<double, 3> sorted_edges(const ClothState& cloth, const Triangle& triangle) {
+    std::array<double, 3> lengths{};
+    for (std::size_t k = 0; k < 3; ++k)
+        lengths[k] = edge_length(cloth.rest_positions, {triangle[k], triangle[(k + 1) % 3]});
+    std::sort(lengths.begin(), lengths.end());
+    return lengths;
+}
+
+}  // namespace
+
+CapTriangles cap_triangles(const ClothState& cloth) {
+    CapTriangles caps;
+    const auto triangles = cloth.topology->triangles();
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        const auto [shortest, middle, longest] = sorted_edges(cloth, triangles[t]);
+        if (!(shortest > kShortEdge * longest)) continue;
+        const double height = 2.0 * triangle_area(cloth.rest_positions, triangles[t]) / (longest * longest);
+        if (height < kCapHeight) ++caps.count;
+        if (height < caps.height) {
+            caps.height = height;
+            caps.flattest = t;
+        }
+    }
+    return caps;
+}
+
+std::string cap_triangles_advice(const CapTriangles& caps) {
+    const std::string others = caps.count > 1 ? " and of those like it" : "";
+    return "flip the longest edge of triangle " + std::to_string(caps.flattest) + others + " in the mesh";
+}
+
+std::optional<std::string> cap_triangles_warning(const CapTriangles& caps) {
+    if (caps.count == 0) return std::nullopt;
+    char height[32];
+    std::snprintf(height, sizeof height, "1/%.0f", 1.0 / caps.height);
+    return "triangles with a corner close to the opposite edge: " + std::to_string(caps.count) +
+           " (flattest: triangle " + std::to_string(caps.flattest) + ", height " + height +
+           " of its longest edge); their areas are hard to hold, " + cap_triangles_advice(caps);
+}
+
+}  // namespace apsl::scenes
