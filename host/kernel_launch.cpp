@@ -9,15 +9,16 @@ namespace apsl::host {
 
 Kernel create_kernel(cl_program program, const char* name) {
     cl_int status = CL_SUCCESS;
-    Kernel kernel{name, KernelHandle(clCreateKernel(program, name, &status))};
+    Kernel kernel{name, KernelHandle(clCreateKernel(program, name, &status)), {}};
     check(status, ("creating kernel " + kernel.name).c_str());
     return kernel;
 }
 
-void set_argument(const Kernel& kernel, cl_uint index, const void* value, std::size_t size) {
-    const cl_int status = clSetKernelArg(kernel.handle.get(), index, size, value);
+void ArgumentList::set(const void* value, std::size_t size) {
+    const cl_int status = clSetKernelArg(kernel_.handle.get(), next_, size, value);
     if (status != CL_SUCCESS)
-        check(status, ("setting argument " + std::to_string(index) + " of kernel " + kernel.name).c_str());
+        check(status, ("setting argument " + std::to_string(next_) + " of kernel " + kernel_.name).c_str());
+    ++next_;
 }
 
 std::vector<KernelTime> LaunchProfile::collect() {

@@ -7,37 +7,83 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace apsl::host {
 
-/// A kernel and its name, for messages and profiles.
+/// A kernel, its name for messages and profiles, and what its arguments were last set to.
 struct Kernel {
+    /// The bytes of a buffer's handle or of a number.
+    struct Argument {
+        std::uint64_t value = 0;
+        bool known = false;
+    };
+
     std::string name;
     KernelHandle handle;
+    mutable std::vector<Argument> arguments;
 };
 
 /// Throws Error(opencl) naming the kernel.
 Kernel create_kernel(cl_program program, const char* name);
 
-void set_argument(const Kernel& kernel, cl_uint index, const void* value, std::size_t size);
+/// Arguments of a kernel, one after the other from its first on. One that has the value of the launch before is not set
+/// again: a call launches some kernels a hundred times.
+class ArgumentList {
+public:
+    explicit ArgumentList(const Kernel& kernel) : kernel_(kernel) {}
 
-template <class Value>
-void set_argument(const Kernel& kernel, cl_uint index, const Value& value) {
-    if constexpr (requires { value.get(); }) {
-        const auto object = value.get();
-        set_argument(kernel, index, &object, sizeof object);
-    } else {
-        set_argument(kernel, index, &value, sizeof value);
+    /// A buffer by its handle, a number, or a struct.
+    template <class Value>
+    void add(const Value& value) {
+        if constexpr (requires { value.get(); })
+            add_value(value.get());
+        else
+            add_value(value);
     }
-}
+    /// The buffer and the place of its first float. What is the caller's is set again every time: a new buffer may have
+    /// the handle of one that was released.
+    void add(const BufferView& view) {
+        set(&view.buffer, sizeof view.buffer);
+        set_number(cl_ulong{view.offset / sizeof(float)});
+    }
 
-/// Sets the arguments from `first` on, in order. Buffers as handles, numbers as themselves.
+private:
+    template <class Value>
+    void add_value(const Value& value) {
+        if constexpr (sizeof(Value) <= sizeof(std::uint64_t))
+            set_number(value);
+        else
+            set(&value, sizeof value);
+    }
+    template <class Number>
+    void set_number(const Number& number) {
+        std::uint64_t bytes = 0;
+        std::memcpy(&bytes, &number, sizeof number);
+        if (kernel_.arguments.size() <= next_) kernel_.arguments.resize(next_ + 1);
+        Kernel::Argument& last = kernel_.arguments[next_];
+        if (last.known && last.value == bytes) {
+            ++next_;
+            return;
+        }
+        set(&number, sizeof number);
+        last = {bytes, true};
+    }
+    void set(const void* value, std::size_t size);
+
+    const Kernel& kernel_;
+    cl_uint next_ = 0;
+};
+
+/// All arguments, in order: buffers as what owns them, the caller's as BufferView, numbers as themselves.
 template <class... Values>
-void set_arguments(const Kernel& kernel, cl_uint first, const Values&... values) {
-    (set_argument(kernel, first++, values), ...);
+const Kernel& set_arguments(const Kernel& kernel, const Values&... values) {
+    ArgumentList list(kernel);
+    (list.add(values), ...);
+    return kernel;
 }
 
 /// Launches whose events are kept until somebody asks for their times.

@@ -86,8 +86,8 @@ cl_event StrainLimiter::read_stats(cl_command_queue queue, std::span<Stats> stat
                                                      std::to_string(implementation_->cloth_count) + " cloths");
     host::check_queue(queue, wait_list, implementation_->context, implementation_->device);
     cl_event event = nullptr;
-    host::check(clEnqueueReadBuffer(queue, implementation_->stats.get(), CL_FALSE, 0, stats.size_bytes(), stats.data(),
-                                    static_cast<cl_uint>(wait_list.size()),
+    host::check(clEnqueueReadBuffer(queue, implementation_->arrays.stats.get(), CL_FALSE, 0, stats.size_bytes(),
+                                    stats.data(), static_cast<cl_uint>(wait_list.size()),
                                     wait_list.empty() ? nullptr : wait_list.data(), &event),
                 "queueing the read of the statistics");
     return event;

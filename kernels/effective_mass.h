@@ -16,14 +16,12 @@ APSL_INLINE float greatest_effective_mass(float log_masses, float movable) {
     return movable > 0.0f ? APSL_GREATEST_MEAN_MASSES * exp2(log_masses / movable) : 0.0f;
 }
 
-// From K w: whether the mass is less than K asks for.
-APSL_INLINE bool is_too_stiff(float stiffness_per_mass) {
-    return APSL_MASS_PER_STIFFNESS * stiffness_per_mass > 1.0f;
-}
+// The greatest K w that a mass is enough for.
+#define APSL_HELD_TENSION (1.0f / APSL_MASS_PER_STIFFNESS)
 
 // 1/w' for the stiffness K, kg; `given` is w > 0. Without a reason to raise the mass, w itself.
 APSL_INLINE float effective_inverse_mass(float given, float stiffness, float greatest) {
-    if (!is_too_stiff(stiffness * given)) return given;
+    if (!(stiffness * given > APSL_HELD_TENSION)) return given;
     return fmin(given, 1.0f / fmin(APSL_MASS_PER_STIFFNESS * stiffness, fmax(1.0f / given, greatest)));
 }
 

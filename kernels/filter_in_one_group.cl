@@ -109,9 +109,9 @@ APSL_KERNEL void filter_in_one_group(
             const apsl_walk walk = {sub_steps,
                                     walked_sub_steps(parameters[c]),
                                     solved,
-                                    raises_masses,
                                     raises_masses && sub_steps + 1 < parameters[c].sub_steps,
-                                    states[c].greatest_mass};
+                                    states[c].greatest_mass,
+                                    raises_masses ? APSL_HELD_TENSION : INFINITY};
             if (walking)  // uniform
                 walk_vertices(cloths[c], true, walk, corner_offsets, corners, gradients, pressure, predicted, motion,
                               correction);

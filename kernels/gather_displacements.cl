@@ -32,9 +32,9 @@ APSL_KERNEL void gather_displacements(__global const apsl_cloth* cloths, __globa
     const apsl_walk walk = {sub_step,
                             walked_sub_steps(parameters[c]),
                             solved,
-                            raises_masses,
                             raises_masses && sub_step + 1 < parameters[c].sub_steps,
-                            states[c].greatest_mass};
+                            states[c].greatest_mass,
+                            raises_masses ? APSL_HELD_TENSION : INFINITY};
     walk_vertices(cloths[c], walking && !states[c].stopped, walk, corner_offsets, corners, gradients, pressure,
                   predicted, motion, correction);
     const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);

@@ -138,9 +138,9 @@ APSL_INLINE void displace_vertices(apsl_cloth cloth, bool active, __global const
 typedef struct {
     int sub_step, walked;
     bool solved;          // there are pressures
-    bool raises_masses;   // this cloth's vertices may weigh more than given
     bool renews_masses;   // from the next sub-step on
     float greatest_mass;  // kg
+    float held_tension;   // greatest K w' that no mass is raised for; infinite where masses stay as given
 } apsl_walk;
 
 // x_i += Δx_i, and on to the next part. A displacement in the part before changes the velocity by walked · Δx / Δt, and
@@ -169,7 +169,7 @@ APSL_INLINE void walk_vertices(apsl_cloth cloth, bool active, apsl_walk walk, __
                 change = -sqrt(2.0f * effective) * sums.force;
             }
             // Of most vertices the mass stays as given, and K, which takes a division, is of no use.
-            if (walk.raises_masses && (effective < given || is_too_stiff(tension))) {
+            if (effective < given || tension > walk.held_tension) {
                 const float stiffness = tension / effective;
                 change *= share_taken(given, effective, stiffness, walk.greatest_mass);
                 if (walk.renews_masses) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Every kernel's argument list, once. Each function builds the kernel's own file alone, launches it over all cloths of
-// the arrays and waits.
+// Each function builds the kernel's own file alone, launches it over all cloths of the arrays and waits.
 #pragma once
 
 #include "kernels/arrays.hpp"

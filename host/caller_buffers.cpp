@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "caller_buffers.hpp"
+
+#include "caller_objects.hpp"
+
+#include <string>
+
+namespace apsl::host {
+namespace {
+
+[[noreturn]] void invalid(const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, what);
+}
+
+// Floats from the first number of the first vertex to the last of the last.
+std::size_t vector_extent(std::size_t vertices, std::uint32_t stride, std::uint32_t component_stride) {
+    return (vertices - 1) * stride + std::size_t{2} * component_stride + 1;
+}
+
+}  // namespace
+
+std::size_t position_floats(const Options& options, const CallerCounts& counts) {
+    return vector_extent(counts.vertices, options.position_stride, options.position_component_stride);
+}
+
+void check_buffers(const Buffers& buffers, const Options& options, const CallerCounts& counts, cl_context context) {
+    const auto check = [&](const BufferView& view, std::size_t floats, Access access, const char* name) {
+        check_view(view, floats, access, context, name);
+    };
+    check(buffers.positions, position_floats(options, counts),
+          options.positions_only ? Access::read_and_write : Access::read, "buffers.positions");
+    if (!options.positions_only)
+        check(buffers.velocities,
+              vector_extent(counts.vertices, options.velocity_stride, options.velocity_component_stride),
+              Access::read_and_write, "buffers.velocities");
+    else if (buffers.velocities.buffer)
+        invalid("buffers.velocities is given, but Options::positions_only is on");
+    check(buffers.inverse_masses, (counts.vertices - 1) * options.inverse_mass_stride + 1, Access::read,
+          "buffers.inverse_masses");
+    check(buffers.rest_areas, counts.triangles, Access::read, "buffers.rest_areas");
+    if (options.regularization_per_triangle)
+        check(buffers.regularization, counts.triangles, Access::read, "buffers.regularization");
+    else if (buffers.regularization.buffer)
+        invalid("buffers.regularization is given, but Options::regularization_per_triangle is off");
+}
+
+const BufferView& corrected(const Buffers& buffers) {
+    return buffers.velocities.buffer ? buffers.velocities : buffers.positions;
+}
+
+const BufferView& regularization_or_any(const Buffers& buffers) {
+    return buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
+}
+
+}  // namespace apsl::host

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <apsl/strain_limiter.hpp>
+
+#include <cstddef>
+
+namespace apsl::host {
+
+/// What a limiter's caller must have room for.
+struct CallerCounts {
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;  ///< rest areas
+};
+
+/// Floats from the first of the caller's positions to the last.
+std::size_t position_floats(const Options& options, const CallerCounts& counts);
+
+/// Throws Error(invalid_argument) naming the first buffer that a call cannot use.
+void check_buffers(const Buffers& buffers, const Options& options, const CallerCounts& counts, cl_context context);
+
+/// What a call corrects: velocities, or the positions where there are none.
+const BufferView& corrected(const Buffers& buffers);
+
+/// α of each triangle. Where one holds for all, another buffer: a kernel needs some buffer there even where it reads
+/// none.
+const BufferView& regularization_or_any(const Buffers& buffers);
+
+}  // namespace apsl::host

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "device_arrays.hpp"
+
+#include "limiter_options.hpp"
+
+#include <algorithm>
+
+namespace apsl::host {
+namespace {
+
+// Bytes of a triangle's corner gradients (kernels/gradients.h).
+constexpr std::size_t gradient_bytes = 32;
+
+}  // namespace
+
+DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency, const Options& options,
+                                std::uint32_t groups) {
+    const auto buffer = [&](std::size_t size) { return memory.allocate(size, nullptr); };
+    const auto upload = [&]<class Value>(const std::vector<Value>& contents) {
+        return memory.allocate(contents.size() * sizeof(Value), contents.data());
+    };
+    // The padding of these is read by vector loads and must hold numbers.
+    const auto zeroed = [&](std::size_t floats) { return upload(std::vector<float>(floats, 0.0f)); };
+    const bool one_group = options.execution == Execution::one_group;
+    const bool by_chebyshev = options.solver == Solver::chebyshev;
+    const std::size_t cloth_count = adjacency.cloths.size();
+    const std::size_t vertex_count = adjacency.vertex_count, triangle_count = adjacency.triangle_count;
+
+    DeviceArrays arrays;
+    arrays.groups = groups;
+    arrays.cloths = upload(adjacency.cloths);
+    arrays.parameters = buffer(cloth_count * sizeof(apsl_parameters));
+    apsl_solve_state initial{};
+    initial.adaptive_factor = 1.0f;
+    arrays.states = upload(std::vector(cloth_count, initial));
+    arrays.stats = buffer(cloth_count * sizeof(apsl_stats));
+    if (!one_group) arrays.partials = buffer(cloth_count * groups * APSL_PARTIAL_KINDS * sizeof(float));
+
+    arrays.vertex_order = upload(adjacency.vertex_order);
+    arrays.triangle_order = upload(adjacency.triangle_order);
+    arrays.triangles = upload(adjacency.triangles);
+    arrays.corner_offsets = upload(adjacency.corner_offsets);
+    arrays.corners = upload(adjacency.corners);
+    if (uses_pattern(options)) {
+        arrays.row_offsets = upload(adjacency.row_offsets);
+        arrays.columns = upload(adjacency.columns);
+        arrays.shared = upload(adjacency.shared);
+    } else {
+        arrays.patches = upload(adjacency.patches);
+        arrays.patch_vertices = upload(adjacency.patch_vertices);
+        arrays.local_triangles = upload(adjacency.local_triangles);
+    }
+    if (options.apply == Apply::assembled_csr) arrays.values = buffer(adjacency.columns.size() * sizeof(float));
+
+    arrays.ordered_rest_areas = zeroed(triangle_count);
+    arrays.ordered_regularization =
+        upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
+    if (by_chebyshev) arrays.vertex_bounds = buffer(vertex_count * sizeof(float));
+    arrays.predicted = buffer(vertex_count * sizeof(cl_float4));
+    const std::size_t walking_vertices = options.positions_only ? 1 : vertex_count;
+    arrays.motion = buffer(walking_vertices * sizeof(cl_float4));
+    arrays.correction = buffer(walking_vertices * sizeof(cl_float4));
+    arrays.start_errors = zeroed(options.positions_only ? 1 : triangle_count);
+    arrays.gradients = buffer(triangle_count * gradient_bytes);
+    arrays.residual = zeroed(triangle_count);
+    arrays.damped_diagonal = zeroed(triangle_count);
+    arrays.direction = buffer(triangle_count * sizeof(float));
+    if (!by_chebyshev) {
+        arrays.product = zeroed(triangle_count);
+        arrays.direction_product = buffer(triangle_count * sizeof(float));
+    }
+    if (one_group) {
+        arrays.pressures.push_back(zeroed(triangle_count * std::size_t{1 + options.kept_pressures}));
+    } else {
+        for (std::uint32_t n = 0; n < std::max(options.kept_pressures, 1u); ++n)
+            arrays.pressures.push_back(zeroed(triangle_count));
+    }
+    return arrays;
+}
+
+}  // namespace apsl::host

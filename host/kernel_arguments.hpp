@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+//
+// Every kernel's argument list, once. A function gives the kernel of its name all its arguments, in the kernel's order,
+// and returns it for the launch. `Arrays` is DeviceArrays, or what has members of the same names: a test's arrays.
+#pragma once
+
+#include "caller_buffers.hpp"
+#include "kernel_launch.hpp"
+#include "kernels/layout.h"
+
+namespace apsl::host::arguments {
+
+template <class Arrays>
+const Kernel& set_parameters(const Kernel& kernel, const Arrays& a, const apsl_parameter_block& block, cl_uint first,
+                             cl_uint count) {
+    return set_arguments(kernel, a.parameters, block, first, count);
+}
+
+template <class Arrays>
+const Kernel& rest_areas(const Kernel& kernel, const Arrays& a, const BufferView& rest_positions,
+                         const BufferView& areas) {
+    return set_arguments(kernel, a.cloths, a.vertex_order, a.triangle_order, a.triangles, rest_positions, areas);
+}
+
+template <class Arrays>
+const Kernel& predict_positions(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.predicted,
+                         a.motion, caller.positions, corrected(caller), caller.inverse_masses);
+}
+
+template <class Arrays>
+const Kernel& order_triangle_values(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.triangle_order, a.ordered_rest_areas,
+                         a.ordered_regularization, caller.rest_areas, regularization_or_any(caller));
+}
+
+template <class Arrays>
+const Kernel& measure_step(const Kernel& kernel, const Arrays& a) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.predicted, a.motion,
+                         a.ordered_rest_areas, a.start_errors);
+}
+
+template <class Arrays>
+const Kernel& begin_call(const Kernel& kernel, const Arrays& a) {
+    return set_arguments(kernel, a.parameters, a.states, a.stats, a.partials, a.groups);
+}
+
+template <class Arrays>
+const Kernel& start_walk(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.predicted, a.motion, a.correction,
+                         caller.velocities);
+}
+
+template <class Arrays>
+const Kernel& assemble_gradients(const Kernel& kernel, const Arrays& a, bool by_chebyshev, cl_int sub_step) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients,
+                         a.residual, a.damped_diagonal, a.ordered_rest_areas,
+                         by_chebyshev ? a.vertex_bounds : a.ordered_regularization, a.start_errors, sub_step);
+}
+
+template <class Arrays>
+const Kernel& begin_solve(const Kernel& kernel, const Arrays& a, cl_int sub_step) {
+    return set_arguments(kernel, a.parameters, a.states, a.stats, a.partials, a.groups, sub_step);
+}
+
+template <class Arrays>
+const Kernel& assemble_pressure_csr(const Kernel& kernel, const Arrays& a) {
+    return set_arguments(kernel, a.cloths, a.states, a.triangles, a.predicted, a.gradients, a.row_offsets, a.columns,
+                         a.shared, a.values);
+}
+
+/// `multiplied`: the array that the matrix is applied to.
+template <class Arrays, class Array>
+const Kernel& csr_spmv_dot(const Kernel& kernel, const Arrays& a, const Array& multiplied, cl_int iteration) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.row_offsets, a.columns, a.values,
+                         multiplied, a.product, iteration);
+}
+
+template <class Arrays, class Array>
+const Kernel& matrix_free_printed(const Kernel& kernel, const Arrays& a, const Array& multiplied, cl_int iteration) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients,
+                         a.row_offsets, a.columns, a.shared, multiplied, a.product, iteration);
+}
+
+template <class Arrays, class Array>
+const Kernel& matrix_free_consistent(const Kernel& kernel, const Arrays& a, const Array& multiplied, cl_int iteration) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.patches, a.patch_vertices,
+                         a.local_triangles, a.corner_offsets, a.corners, a.gradients, multiplied, a.product, iteration);
+}
+
+template <class Arrays, class Array>
+const Kernel& measure_guess(const Kernel& kernel, const Arrays& a, const Array& pressure) {
+    return set_arguments(kernel, a.cloths, a.states, a.partials, a.residual, pressure);
+}
+
+template <class Arrays, class Array>
+const Kernel& start_from_guess(const Kernel& kernel, const Arrays& a, const Array& pressure) {
+    return set_arguments(kernel, a.cloths, a.states, a.partials, a.residual, a.damped_diagonal, a.product, pressure);
+}
+
+template <class Arrays, class Array>
+const Kernel& cg_update(const Kernel& kernel, const Arrays& a, const Array& pressure, cl_int iteration) {
+    return set_arguments(kernel, a.cloths, a.states, a.partials, a.residual, a.damped_diagonal, a.product, a.direction,
+                         a.direction_product, pressure, iteration);
+}
+
+/// `iterations`: those queued before.
+template <class Arrays, class Array>
+const Kernel& finish_solve(const Kernel& kernel, const Arrays& a, const Array& pressure, cl_int iterations) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.patches, a.patch_vertices,
+                         a.local_triangles, a.corner_offsets, a.corners, a.gradients, a.residual, a.damped_diagonal,
+                         a.product, a.direction, a.direction_product, pressure, a.groups, iterations);
+}
+
+template <class Arrays>
+const Kernel& bound_vertices(const Kernel& kernel, const Arrays& a) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.corner_offsets, a.corners, a.gradients,
+                         a.predicted, a.motion, a.vertex_bounds);
+}
+
+/// Launch `launch` of `launched`. The last one writes the pressure; those before it take turns with the direction.
+template <class Arrays, class Array>
+const Kernel& chebyshev_step(const Kernel& kernel, const Arrays& a, const Array& pressure, cl_int sub_step,
+                             cl_int launched, cl_int launch) {
+    const bool to_pressure = (launched - 1 - launch) % 2 == 0;
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.patches, a.patch_vertices, a.local_triangles,
+                         a.corner_offsets, a.corners, a.gradients, a.residual, to_pressure ? a.direction : pressure,
+                         to_pressure ? pressure : a.direction, sub_step, launched, launch);
+}
+
+/// `slot`: of the last iteration's residual, 0 even, 1 odd.
+template <class Arrays, class Array>
+const Kernel& gather_displacements(const Kernel& kernel, const Arrays& a, const Array& pressure, cl_int sub_step,
+                                   cl_uint slot) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.corner_offsets, a.corners,
+                         a.gradients, pressure, a.predicted, a.motion, a.correction, sub_step, slot);
+}
+
+template <class Arrays>
+const Kernel& measure_area_change(const Kernel& kernel, const Arrays& a) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.predicted, a.motion,
+                         a.ordered_rest_areas);
+}
+
+template <class Arrays>
+const Kernel& end_call(const Kernel& kernel, const Arrays& a) {
+    return set_arguments(kernel, a.cloths, a.states, a.stats, a.partials, a.vertex_order, a.triangle_order, a.triangles,
+                         a.predicted, a.ordered_rest_areas, a.groups);
+}
+
+template <class Arrays>
+const Kernel& update_velocities(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.predicted, a.correction,
+                         caller.positions, corrected(caller));
+}
+
+/// `pressure_stride`: from one kept pressure to the next, triangles.
+template <class Arrays, class Array>
+const Kernel& filter_in_one_group(const Kernel& kernel, const Arrays& a, const Array& pressure, const Buffers& caller,
+                                  cl_uint pressure_stride) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.triangle_order,
+                         a.triangles, a.patches, a.patch_vertices, a.local_triangles, a.corner_offsets, a.corners,
+                         a.predicted, a.motion, a.correction, a.gradients, a.residual, a.damped_diagonal, a.product,
+                         a.direction, a.direction_product, pressure, a.ordered_rest_areas, a.ordered_regularization,
+                         a.start_errors, caller.positions, corrected(caller), caller.inverse_masses, caller.rest_areas,
+                         regularization_or_any(caller), pressure_stride);
+}
+
+}  // namespace apsl::host::arguments
