@@ -233,14 +233,11 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
                 " cloths, expected one for each or a single one");
     CallBudget budget;
     for (const Parameters& p : given) {
-        validate(p);
-        if (!p.enabled) continue;
-        if (options.positions_only && p.stepping == Stepping::small_steps)
-            invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
-        if (by_chebyshev() && p.adaptive_iterations > 0)
-            invalid("adaptive_iterations is " + std::to_string(p.adaptive_iterations) +
-                    ", expected 0: Options::solver is chebyshev, which has no iterations to go by");
-        budget.add(as_run(p));
+        if (p.enabled)
+            validate(options, p);
+        else
+            validate(p);
+        if (p.enabled) budget.add(as_run(p));
     }
     check_queue(queue, wait_list, context, device);
     check_buffers(buffers, options, caller_counts, context);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fields.hpp"
+#include "stats_fields.hpp"
 
 #include <pybind11/pybind11.h>
 

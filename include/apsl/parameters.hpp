@@ -9,34 +9,7 @@
 
 namespace apsl {
 
-/// Which matrix couples the pressures (docs/formulation.md).
-enum class Matrix : std::int32_t {
-    consistent = 0,  ///< G = ½ Σ w g·g over shared vertices: what Eq. (6) really does to the areas
-    printed = 1,     ///< Eq. (4) as printed: triangles across an edge only
-};
-
-/// How G is applied inside Conjugate Gradient.
-enum class Apply : std::int32_t {
-    assembled_csr = 0,  ///< assemble the rows, then sparse matrix-vector products
-    matrix_free = 1,    ///< from the corner gradients, nothing assembled
-};
-
-/// How the system of a sub-step is solved.
-enum class Solver : std::int32_t {
-    conjugate_gradient = 0,  ///< of the damped matrix G + (α − 1) diag(G), to Parameters::tolerance
-    /// A fixed Chebyshev polynomial in G, of a degree with the reach that α has (docs/formulation.md): no sums over the
-    /// cloth, one launch an iteration, and stable however few of them. Parameters::tolerance is not used.
-    chebyshev = 1,
-};
-
-/// How a call is divided over the device.
-enum class Execution : std::int32_t {
-    automatic = 0,    ///< one_group where the largest cloth is small, many_groups otherwise
-    many_groups = 1,  ///< each step of the filter is a launch over all of a cloth
-    one_group = 2,    ///< one work-group takes one cloth through the whole call, in a single launch for all cloths
-};
-
-/// From where the sub-steps of a call correct.
+/// Which positions each sub-step linearises about.
 enum class Stepping : std::int32_t {
     automatic = 0,   ///< small_steps from 20 sub-steps up, whole_step below
     whole_step = 1,  ///< Algorithm 1 as printed: every sub-step starts from x̃ + Δt ṽ and what was corrected so far
@@ -67,10 +40,12 @@ struct Parameters {
     /// last, α − 1 changes by the same factor from one sub-step to the next (docs/formulation.md). Needs
     /// regularization > 1; a per-triangle α is that of the last sub-step and is scaled alike.
     float first_regularization = 0.0f;
-    Stepping stepping = Stepping::automatic;  ///< from where the sub-steps correct
+    Stepping stepping = Stepping::automatic;  ///< which positions each sub-step linearises about
     /// false: the cloth is left alone, nothing of it is read or written, its statistics are zeros with Status::off, and
     /// what is kept for its next call stays.
     bool enabled = true;
+
+    bool operator==(const Parameters&) const = default;
 };
 
 APSL_STRUCTS_END

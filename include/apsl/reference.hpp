@@ -2,7 +2,7 @@
 #pragma once
 
 #include <apsl/cxx20.hpp>
-#include <apsl/parameters.hpp>
+#include <apsl/options.hpp>
 #include <apsl/stats.hpp>
 #include <apsl/topology.hpp>
 
@@ -30,10 +30,10 @@ struct Buffers {
 template <class Real>
 class BasicStrainLimiter {
 public:
-    /// `kept_pressures`, `solver` and `bound_period`: as in Options of apsl::StrainLimiter, with the same limits.
-    explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix = Matrix::consistent,
-                                std::uint32_t kept_pressures = 0, Solver solver = Solver::conjugate_gradient,
-                                std::uint32_t bound_period = 1);
+    /// Of the options `matrix`, `solver`, `kept_pressures` and `bound_period` count here; the others say how a device
+    /// is used. α is one for each triangle where the buffers have one. Throws Error(invalid_argument) as validate()
+    /// does.
+    explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, const Options& options = {});
     ~BasicStrainLimiter();
     BasicStrainLimiter(BasicStrainLimiter&&) noexcept;  ///< what was moved from may only be assigned to or destroyed
     BasicStrainLimiter& operator=(BasicStrainLimiter&&) noexcept;  ///< likewise

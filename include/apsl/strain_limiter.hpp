@@ -4,6 +4,7 @@
 #include <apsl/cxx20.hpp>
 #include <apsl/error.hpp>
 #include <apsl/export.hpp>
+#include <apsl/options.hpp>
 #include <apsl/parameters.hpp>
 #include <apsl/stats.hpp>
 #include <apsl/topology.hpp>
@@ -21,45 +22,6 @@
 namespace apsl {
 
 APSL_STRUCTS_BEGIN
-
-/// What is compiled into the kernels of a StrainLimiter.
-struct Options {
-    Matrix matrix = Matrix::consistent;  ///< what couples the pressures
-    Apply apply = Apply::matrix_free;    ///< how it is applied
-    /// one_group needs the consistent matrix, matrix-free, Conjugate Gradient, and on a device that is no CPU neither
-    /// kept_pressures nor regularization_per_triangle.
-    Execution execution = Execution::automatic;
-    /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
-    std::uint32_t work_group_size = 0;
-    /// Floats from one vertex to the next in positions and in velocities: ≥ 3, or 1 and more where components lie in
-    /// runs of their own.
-    std::uint32_t position_stride = 3;
-    std::uint32_t velocity_stride = 3;  ///< likewise
-    /// Floats from x to y and from y to z: 1 side by side (xyzxyz…); otherwise a number such that the runs do not
-    /// overlap (structure of arrays: xxx…yyy…zzz… has stride 1 and here the vertices that there is room for).
-    std::uint32_t position_component_stride = 1;
-    std::uint32_t velocity_component_stride = 1;  ///< likewise
-    /// Floats from one inverse mass to the next, ≥ 1. In the w of xyzw positions: 4, and Buffers::inverse_masses at the
-    /// positions' offset + 12.
-    std::uint32_t inverse_mass_stride = 1;
-    /// There are no velocities: positions are those at the end of the step, and a call corrects them in place, as a
-    /// constraint of position-based dynamics does. Parameters::time_step is not used, and steps stay whole.
-    bool positions_only = false;
-    /// A regularization buffer is given with every call.
-    bool regularization_per_triangle = false;
-    /// The pressures of so many sub-steps of a call (4 B a triangle each; later sub-steps share the last) are kept, and
-    /// are the first guess for the solves of the next call: fewer CG iterations at small α, at the price of one product
-    /// with the matrix a solve, counted as an iteration. As many as there are sub-steps, or 0: solves start from zero.
-    /// Results then depend on the calls before, within the tolerance of the solves.
-    std::uint32_t kept_pressures = 0;
-    /// chebyshev needs the consistent matrix, matrix-free, no kept_pressures and one α for all triangles, and with
-    /// every call Parameters::adaptive_iterations 0.
-    Solver solver = Solver::conjugate_gradient;
-    /// chebyshev: sub-steps from one bound of the matrix to the next, ≥ 1. 1 is for garments, where a triangle may
-    /// become another from one sub-step to the next; where none does, one bound for all sub-steps of a call (as many or
-    /// more) is quicker (docs/formulation.md).
-    std::uint32_t bound_period = 1;
-};
 
 /// A place in a caller's buffer. The element stride is fixed in Options.
 struct BufferView {

@@ -3,7 +3,7 @@
 
 #include <apsl/cxx20.hpp>
 #include <apsl/export.hpp>
-#include <apsl/parameters.hpp>
+#include <apsl/options.hpp>
 
 #include <array>
 #include <cstddef>

@@ -53,18 +53,6 @@ std::vector<float> to_float_around(const std::array<double, 3>& origin, const st
     return floats;
 }
 
-Options options_for(const StrainLimiting& settings) {
-    Options options;
-    options.matrix = settings.matrix;
-    options.apply = settings.apply;
-    options.execution = settings.execution;
-    options.solver = settings.solver;
-    options.bound_period = settings.bound_period;
-    options.regularization_per_triangle = !settings.regularization.empty();
-    options.kept_pressures = settings.kept_pressures;
-    return options;
-}
-
 }  // namespace
 
 OpenClFilter::OpenClFilter(const OpenClDevice& device, const ClothState& cloth, const StrainLimiting& settings,
@@ -73,7 +61,7 @@ OpenClFilter::OpenClFilter(const OpenClDevice& device, const ClothState& cloth, 
       parameters_(settings.parameters),
       context_(make_context(device.id)),
       queue_(make_queue(context_.get(), device.id, profile)),
-      limiter_(context_.get(), device.id, cloth.topology, options_for(settings)),
+      limiter_(context_.get(), device.id, cloth.topology, settings.options),
       filtered_velocities_(cloth.velocities.size()) {
     uploaded_positions_ = to_float_around(origin_for(cloth.positions), cloth.positions);
     uploaded_velocities_ = to_float(cloth.velocities);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/parse_scene.hpp"
 
+#include "fields.hpp"
 #include "run/input_error.hpp"
 #include "run/override_scene.hpp"
 #include "run/parse_json.hpp"
@@ -10,13 +11,16 @@
 
 #include <apsl/error.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
+#include <string_view>
+#include <type_traits>
 
 namespace apsl::scenes {
 namespace {
 
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
-constexpr std::int32_t kMaxKeptPressures = 1000;
 
 std::array<std::uint32_t, 2> counts(SceneObject& object, const std::string& key,
                                     const std::array<std::uint32_t, 2>& fallback,
@@ -123,68 +127,59 @@ Integrator parse_integrator(SceneObject object) {
     return integrator;
 }
 
-void check_chebyshev(SceneObject& object, const StrainLimiting& settings) {
-    if (settings.matrix != Matrix::consistent || settings.apply != Apply::matrix_free) {
-        object.find("solver").fail("chebyshev needs the consistent matrix, matrix_free");
+// What a scene says otherwise, or leaves to the device.
+constexpr std::string_view kFieldsOfNoScene[] = {"time_step", "enabled", "work_group_size",
+                                                 "regularization_per_triangle", "regularization"};
+
+Range range_of(const Bounds& bounds) {
+    // Where 0 is legal beside a range, validate() tells.
+    return {.min = bounds.zero ? 0.0 : bounds.least,
+            .min_excluded = bounds.least_excluded && !bounds.zero,
+            .max = bounds.greatest,
+            .max_excluded = bounds.greatest_excluded};
+}
+
+template <class Struct, class Value>
+void parse_field(SceneObject& object, const Field<Struct, Value>& field, Struct& values) {
+    if (std::ranges::find(kFieldsOfNoScene, std::string_view(field.name)) != std::end(kFieldsOfNoScene)) return;
+    Value& value = values.*field.member;
+    if constexpr (std::is_enum_v<Value>) {
+        std::array<std::pair<const char*, Value>, names_of<Value>.size()> choices;
+        std::ranges::transform(names_of<Value>, choices.begin(),
+                               [](const auto& named) { return std::pair(named.second, named.first); });
+        value = object.choice(field.name, value, choices);
+    } else if constexpr (std::is_floating_point_v<Value>) {
+        value = static_cast<Value>(object.number(field.name, value, range_of(field.bounds)));
+    } else {
+        const auto least = static_cast<std::int64_t>(field.bounds.least);
+        const auto greatest = static_cast<std::int64_t>(std::min(field.bounds.greatest, double{kMaxCount}));
+        value = static_cast<Value>(object.integer(field.name, value, least, greatest));
     }
-    if (settings.execution == Execution::one_group) object.find("solver").fail("chebyshev does not run in one_group");
-    if (!settings.regularization.empty()) object.find("solver").fail("chebyshev needs one regularization for all");
-    if (settings.kept_pressures > 0) object.find("solver").fail("chebyshev takes no kept_pressures");
-    if (settings.parameters.adaptive_iterations > 0) {
-        object.find("solver").fail("chebyshev takes no adaptive_iterations");
+}
+
+// One for all triangles, or one for each.
+void parse_regularization(SceneObject& object, StrainLimiting& settings) {
+    const SceneValue given = object.find("regularization");
+    if (given.json == nullptr || !given.json->is_array()) {
+        float& regularization = settings.parameters.regularization;
+        regularization = static_cast<float>(object.number("regularization", regularization, range_of(at_least_one)));
+        return;
     }
+    if (given.json->empty()) given.expected("a number, or one for each triangle");
+    for (const SceneValue& entry : given.entries())
+        settings.regularization.push_back(static_cast<float>(entry.number(range_of(at_least_one))));
+    settings.options.regularization_per_triangle = true;
 }
 
 StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     StrainLimiting settings;
-    Parameters& parameters = settings.parameters;
-    settings.matrix =
-        object.choice("matrix", settings.matrix, {{"consistent", Matrix::consistent}, {"printed", Matrix::printed}});
-    settings.apply = object.choice("apply", settings.apply,
-                                   {{"assembled_csr", Apply::assembled_csr}, {"matrix_free", Apply::matrix_free}});
-    settings.solver =
-        object.choice("solver", settings.solver,
-                      {{"conjugate_gradient", Solver::conjugate_gradient}, {"chebyshev", Solver::chebyshev}});
-    settings.execution = object.choice("execution", settings.execution,
-                                       {{"automatic", Execution::automatic},
-                                        {"many_groups", Execution::many_groups},
-                                        {"one_group", Execution::one_group}});
-    if (settings.execution == Execution::one_group &&
-        (settings.matrix != Matrix::consistent || settings.apply != Apply::matrix_free)) {
-        object.find("execution").fail("one_group needs the consistent matrix, matrix_free");
-    }
-    const SceneValue regularization = object.find("regularization");
-    if (regularization.json != nullptr && regularization.json->is_array()) {
-        if (regularization.json->empty()) regularization.expected("a number, or one for each triangle");
-        for (const SceneValue& entry : regularization.entries()) {
-            settings.regularization.push_back(static_cast<float>(entry.number(Range::at_least(1.0))));
-        }
-    } else {
-        parameters.regularization =
-            static_cast<float>(object.number("regularization", parameters.regularization, Range::at_least(1.0)));
-    }
-    parameters.time_step = static_cast<float>(time_step);
-    parameters.sub_steps = static_cast<std::int32_t>(object.integer("sub_steps", parameters.sub_steps, 0, kMaxCount));
-    parameters.target_area_change =
-        static_cast<float>(object.number("target_area_change", parameters.target_area_change, Range::at_least(0.0)));
-    parameters.tolerance =
-        static_cast<float>(object.number("tolerance", parameters.tolerance, Range::from_to_below(0.0, 1.0)));
-    parameters.max_iterations =
-        static_cast<std::int32_t>(object.integer("max_iterations", parameters.max_iterations, 1, kMaxCount));
-    parameters.adaptive_iterations =
-        static_cast<std::int32_t>(object.integer("adaptive_iterations", parameters.adaptive_iterations, 0, kMaxCount));
-    parameters.first_regularization = static_cast<float>(
-        object.number("first_regularization", parameters.first_regularization, Range::at_least(0.0)));
-    parameters.stepping = object.choice("stepping", parameters.stepping,
-                                        {{"automatic", Stepping::automatic},
-                                         {"whole_step", Stepping::whole_step},
-                                         {"small_steps", Stepping::small_steps}});
-    settings.kept_pressures = static_cast<std::uint32_t>(object.integer("kept_pressures", 0, 0, kMaxKeptPressures));
-    settings.bound_period = static_cast<std::uint32_t>(object.integer("bound_period", 1, 1, kMaxCount));
-    if (settings.solver == Solver::chebyshev) check_chebyshev(object, settings);
+    for_each_field(option_fields, [&](const auto& field) { parse_field(object, field, settings.options); });
+    parse_regularization(object, settings);
+    for_each_field(parameter_fields, [&](const auto& field) { parse_field(object, field, settings.parameters); });
+    settings.parameters.time_step = static_cast<float>(time_step);
     object.refuse_other_keys();
     try {
-        validate(parameters);  // what 32-bit floats make of the numbers
+        validate(settings.options, settings.parameters);  // of the numbers, what 32-bit floats make of them
     } catch (const Error& error) {
         object.value().fail(error.what());
     }

@@ -6,7 +6,7 @@ namespace apsl::scenes {
 ReferenceFilter::ReferenceFilter(const ClothState& cloth, const StrainLimiting& settings)
     : parameters_(settings.parameters),
       regularization_(settings.regularization.begin(), settings.regularization.end()),
-      limiter_(cloth.topology, settings.matrix, settings.kept_pressures, settings.solver, settings.bound_period) {
+      limiter_(cloth.topology, settings.options) {
 }
 
 Stats ReferenceFilter::filter(ClothState& cloth) {

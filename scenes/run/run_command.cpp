@@ -32,7 +32,7 @@ void write_report(const std::filesystem::path& file, const nlohmann::ordered_jso
 void add_settings_warning(const Scene& scene, std::vector<std::string>& warnings) {
     if (!scene.strain_limiting) return;
     const StrainLimiting& settings = *scene.strain_limiting;
-    if (settings.matrix == Matrix::printed && settings.regularization.empty() &&
+    if (settings.options.matrix == Matrix::printed && settings.regularization.empty() &&
         settings.parameters.regularization < 2.0f) {
         warnings.push_back(
             scene.file +

@@ -6,7 +6,7 @@
 #include "run/make_mesh.hpp"
 #include "run/read_mesh.hpp"
 
-#include <apsl/parameters.hpp>
+#include <apsl/options.hpp>
 
 #include <array>
 #include <cstdint>
@@ -80,14 +80,11 @@ struct StandAloneIntegrator {
 using Integrator = std::variant<NoIntegrator, ImplicitSpringsIntegrator, StandAloneIntegrator>;
 
 struct StrainLimiting {
-    Matrix matrix = Matrix::consistent;
-    Apply apply = Apply::matrix_free;
-    Solver solver = Solver::conjugate_gradient;
-    std::uint32_t bound_period = 1;  ///< by Chebyshev: sub-steps from one bound of the matrix to the next
-    Execution execution = Execution::automatic;
-    std::uint32_t kept_pressures = 0;   ///< sub-steps whose pressures the next step's solves start from
+    Options options;
     Parameters parameters;              ///< time_step is the scene's
-    std::vector<float> regularization;  ///< α ≥ 1, [T]; empty where one number does for all
+    std::vector<float> regularization;  ///< α ≥ 1, [T], with Options::regularization_per_triangle
+
+    bool operator==(const StrainLimiting&) const = default;
 };
 
 /// A scene file as read: what it names and nothing more. SI units.

@@ -58,9 +58,9 @@ public:
     std::int64_t integer(const std::string& key, std::int64_t fallback, std::int64_t min, std::int64_t max);
     std::array<double, 3> vector3(const std::string& key, const std::array<double, 3>& fallback);
 
-    template <class Choice>
-    Choice choice(const std::string& key, Choice fallback,
-                  std::initializer_list<std::pair<const char*, Choice>> choices) {
+    /// `choices`: pairs of a name and what it means.
+    template <class Choice, class Choices = std::initializer_list<std::pair<const char*, Choice>>>
+    Choice choice(const std::string& key, Choice fallback, const Choices& choices) {
         const SceneValue value = find(key);
         if (value.json == nullptr) return fallback;
         const std::string name = value.json->is_string() ? value.text() : std::string{};

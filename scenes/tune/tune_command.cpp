@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tune/tune_command.hpp"
 
+#include "fields.hpp"
 #include "run/commands.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
@@ -24,26 +25,37 @@ class Table {
 public:
     explicit Table(std::FILE* stream) : stream_(stream) {
         std::fprintf(stream_,
-                     "steps  sub-steps  stepping     first α  last α  tolerance  iterations  frames  area change  "
+                     "steps  solver              sub-steps  stepping     first α  last α  tolerance  iterations  "
+                     "frames  area change  "
                      "limiter ms  frame ms\n");
     }
 
     void add(const Trial& trial, const TuningGoal& goal) {
-        const LimiterSettings& s = trial.settings;
-        std::fprintf(stream_, "%5d  %9d  %-11s  %7.4g  %6.4g  %9.3g  %10d  %6d  %9.3f %%  %10.3f  %8.3f  %s\n",
-                     s.steps_per_frame, s.sub_steps, s.stepping.c_str(),
-                     s.first_regularization > 0.0 ? s.first_regularization : s.regularization, s.regularization,
-                     s.tolerance, s.max_iterations, trial.frames, 100.0 * trial.max_area_change,
-                     1e3 * trial.limiter_seconds, 1e3 * trial.seconds(), verdict(trial, goal));
+        const auto& [options, parameters, each] = trial.settings.limiting;
+        const float last = parameters.regularization;
+        const bool has_tolerance = options.solver == Solver::conjugate_gradient;
+        std::fprintf(stream_, "%5d  %-18s  %9d  %-11s  %7.4g  %6.4g  %9s  %10d  %6d  %9.3f %%  %10.3f  %8.3f  %s\n",
+                     trial.settings.steps_per_frame, std::string(name_of(options.solver)).c_str(), parameters.sub_steps,
+                     std::string(name_of(parameters.stepping)).c_str(),
+                     parameters.first_regularization > 0.0f ? parameters.first_regularization : last, last,
+                     has_tolerance ? tolerance_text(parameters.tolerance).c_str() : "-", parameters.max_iterations,
+                     trial.frames, 100.0 * trial.max_area_change, 1e3 * trial.limiter_seconds, 1e3 * trial.seconds(),
+                     verdict(trial, goal));
     }
 
     void add_without_limiter(const Trial& trial, const TuningGoal& goal) {
-        std::fprintf(stream_, "%5d  %-62s %7d  %9.3f %%  %10s  %8.3f  %s\n", trial.settings.steps_per_frame,
+        std::fprintf(stream_, "%5d  %-82s %7d  %9.3f %%  %10s  %8.3f  %s\n", trial.settings.steps_per_frame,
                      "(no strain limiting)", trial.frames, 100.0 * trial.max_area_change, "-", 1e3 * trial.seconds(),
                      verdict(trial, goal));
     }
 
 private:
+    static std::string tolerance_text(float tolerance) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.3g", tolerance);
+        return text;
+    }
+
     static const char* verdict(const Trial& trial, const TuningGoal& goal) {
         if (trial.cut_short) return "given up";
         if (!std::isfinite(trial.max_area_change)) return "diverged";
@@ -137,6 +149,11 @@ Tuning set_up(const TuneOptions& options) {
     return tuning;
 }
 
+bool names_a_solver(const Document& document) {
+    const auto limiting = document.find("strain_limiting");
+    return limiting != document.end() && limiting->is_object() && limiting->contains("solver");
+}
+
 int interruption() {
     std::fprintf(stderr, "interrupted; no scene is written\n");
     return kExitInterrupted;
@@ -156,18 +173,19 @@ int tune_command(const TuneOptions& options) {
     if (!without_limiter) return interruption();
     table.add_without_limiter(*without_limiter, tuning.goal);
 
-    const bool one_regularization =
-        !tuning.scene.strain_limiting || tuning.scene.strain_limiting->regularization.empty();
+    const LimiterSettings given = limiter_settings(tuning.scene);
+    const TuningFreedom freedom{.regularization = !given.limiting.options.regularization_per_triangle,
+                                .solver = !names_a_solver(tuning.document)};
     const std::optional<Trial> best =
-        search_settings(tuning.goal, limiter_settings(tuning.document), one_regularization, tuning.scene.frames,
+        search_settings(tuning.goal, given, freedom, tuning.scene.frames,
                         [&](const LimiterSettings& settings, int frames, const auto& enough) {
-                            auto trial = run_trial(with_settings(tuning.document, settings), tuning.file, frames,
+                            auto trial = run_trial(with_settings(tuning.document, given, settings), tuning.file, frames,
                                                    tuning.device, enough);
                             if (trial) table.add(*trial, tuning.goal);
                             return trial;
                         });
     if (!best) return interruption();
-    const Document tuned = with_settings(tuning.document, best->settings);
+    const Document tuned = with_settings(tuning.document, given, best->settings);
     std::fprintf(tuning.stream, "best, over %d frames:\n", best->frames);
     table.add(*best, tuning.goal);
     if (!tell_what_can_go(tuning, tuned, *best, !tuning.goal.meets_target(*without_limiter))) return interruption();

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "tune/tuning_search.hpp"
 
+#include <apsl/error.hpp>
+
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -11,42 +14,63 @@ namespace {
 
 constexpr std::array kSubSteps{1, 2, 3, 5, 8, 12, 20, 32, 50};
 
-// What a number of sub-steps is tried with: α of the first one, 0 where all are alike, and of the last; small steps
-// need tighter solves.
+// What a number of sub-steps is tried with: α of the first one, 0 where all are alike, and of the last.
 struct Scheme {
-    bool small_steps;
-    double first, last;
+    Solver solver;
+    Stepping stepping;
+    float first, last;
 };
-constexpr std::array kSchemes{Scheme{false, 0.0, 1.2},   Scheme{false, 0.0, 1.1},   Scheme{false, 0.0, 1.05},
-                              Scheme{false, 0.0, 1.02},  Scheme{false, 0.0, 1.01},  Scheme{false, 1.02, 1.2},
-                              Scheme{false, 1.005, 1.2}, Scheme{false, 1.005, 2.0}, Scheme{true, 0.0, 1.2},
-                              Scheme{true, 1.1, 1.4},    Scheme{true, 0.0, 1.05}};
-constexpr double kSmallStepsTolerance = 0.03;
+constexpr auto cg = Solver::conjugate_gradient;
+constexpr auto chebyshev = Solver::chebyshev;
+constexpr auto whole_step = Stepping::whole_step;
+constexpr auto small_steps = Stepping::small_steps;
+constexpr std::array kSchemes{Scheme{cg, whole_step, 0.0f, 1.2f},          Scheme{cg, whole_step, 0.0f, 1.1f},
+                              Scheme{cg, whole_step, 0.0f, 1.05f},         Scheme{cg, whole_step, 0.0f, 1.02f},
+                              Scheme{cg, whole_step, 0.0f, 1.01f},         Scheme{cg, whole_step, 1.02f, 1.2f},
+                              Scheme{cg, whole_step, 1.005f, 1.2f},        Scheme{cg, whole_step, 1.005f, 2.0f},
+                              Scheme{cg, small_steps, 0.0f, 1.2f},         Scheme{cg, small_steps, 1.1f, 1.4f},
+                              Scheme{cg, small_steps, 0.0f, 1.05f},        Scheme{chebyshev, small_steps, 0.0f, 1.2f},
+                              Scheme{chebyshev, small_steps, 0.0f, 1.05f}, Scheme{chebyshev, whole_step, 1.01f, 1.2f}};
+constexpr float kSmallStepsTolerance = 0.03f;  // CG: they need tighter solves
 constexpr std::array kStepFactors{1, 2, 4, 8};
 constexpr std::size_t kMaxConfirmations = 6;
 
 struct Interrupted {};
 
 void set_sub_steps(LimiterSettings& settings, int sub_steps) {
-    settings.sub_steps = sub_steps;
+    auto& [options, parameters, each] = settings.limiting;
+    parameters.sub_steps = sub_steps;
     // Small steps gain little from them.
-    settings.kept_pressures = settings.first_regularization > 0.0 && settings.stepping != "small_steps" ? sub_steps : 0;
+    const bool pays = parameters.first_regularization > 0.0f && parameters.stepping != small_steps;
+    options.kept_pressures = pays && options.solver == cg ? static_cast<std::uint32_t>(sub_steps) : 0;
+}
+
+// Whether a limiter takes them.
+bool are_legal(const LimiterSettings& settings) {
+    try {
+        validate(settings.limiting.options, settings.limiting.parameters);
+    } catch (const Error&) {
+        return false;
+    }
+    return true;
 }
 
 class Search {
 public:
-    Search(const TuningGoal& goal, const LimiterSettings& given, int frames, const TrialRun& run)
+    Search(const TuningGoal& goal, const LimiterSettings& given, const TuningFreedom& freedom, int frames,
+           const TrialRun& run)
         : goal_(goal),
           given_(given),
+          freedom_(freedom),
           frames_(frames),
           search_frames_(std::min(frames, std::max(30, frames / 4))),
           run_(run) {}
 
-    std::optional<Trial> best(bool tune_regularization) {
+    std::optional<Trial> best() {
         try {
             try_settings(given_);
             for (const int factor : kStepFactors) {
-                if (!search_with_steps(factor * given_.steps_per_frame, tune_regularization)) break;
+                if (!search_with_steps(factor * given_.steps_per_frame)) break;
             }
             refine();
             return confirm();
@@ -101,24 +125,34 @@ private:
     }
 
     static LimiterSettings with_scheme(LimiterSettings settings, const Scheme& scheme) {
-        settings.first_regularization = scheme.first;
-        settings.regularization = scheme.last;
-        settings.stepping = scheme.small_steps ? "small_steps" : "whole_step";
-        if (scheme.small_steps) settings.tolerance = kSmallStepsTolerance;
+        Parameters& parameters = settings.limiting.parameters;
+        settings.limiting.options.solver = scheme.solver;
+        parameters.first_regularization = scheme.first;
+        parameters.regularization = scheme.last;
+        parameters.stepping = scheme.stepping;
+        if (scheme.stepping == small_steps && scheme.solver == cg) parameters.tolerance = kSmallStepsTolerance;
         return settings;
     }
 
-    // The fewest sub-steps that meet the target, for each scheme. False where more steps cannot pay.
-    bool search_with_steps(int steps_per_frame, bool tune_regularization) {
+    // What to start from: the schemes that leave alone what is to stay, or what is given.
+    std::vector<LimiterSettings> starts(int steps_per_frame) const {
         LimiterSettings given = given_;
         given.steps_per_frame = steps_per_frame;
-        std::vector<LimiterSettings> starts;
-        if (tune_regularization)
-            for (const Scheme& scheme : kSchemes) starts.push_back(with_scheme(given, scheme));
-        else
-            starts.push_back(given);
+        if (!freedom_.regularization) return {given};
+        std::vector<LimiterSettings> all;
+        for (const Scheme& scheme : kSchemes) {
+            LimiterSettings settings = with_scheme(given, scheme);
+            set_sub_steps(settings, kSubSteps.front());
+            const bool same_solver = scheme.solver == given.limiting.options.solver;
+            if ((freedom_.solver || same_solver) && are_legal(settings)) all.push_back(settings);
+        }
+        return all;
+    }
+
+    // The fewest sub-steps that meet the target, for each scheme. False where more steps cannot pay.
+    bool search_with_steps(int steps_per_frame) {
         auto place = static_cast<std::ptrdiff_t>(kSubSteps.size() / 2);
-        for (LimiterSettings& settings : starts) {
+        for (LimiterSettings& settings : starts(steps_per_frame)) {
             const auto misses = [&](std::ptrdiff_t at) {
                 set_sub_steps(settings, kSubSteps[static_cast<std::size_t>(at)]);
                 return needs_more(settings);
@@ -137,18 +171,19 @@ private:
 
     bool reached() const { return best_ && goal_.meets_target(*best_) && goal_.within_budget(*best_); }
 
-    // Around the best: looser and tighter solves.
+    // Around the best: looser and tighter solves. A polynomial has no tolerance.
     void refine() {
         for (int round = 0; round < 2; ++round) {
             const LimiterSettings centre = best_->settings;
-            for (const double tolerance : {0.3, 0.2, 0.1, 0.03, 0.02}) {
+            if (centre.limiting.options.solver == chebyshev) return;
+            for (const float tolerance : {0.3f, 0.2f, 0.1f, 0.03f, 0.02f}) {
                 LimiterSettings settings = centre;
-                settings.tolerance = tolerance;
+                settings.limiting.parameters.tolerance = tolerance;
                 try_settings(settings);
             }
             for (const int max_iterations : {8, 16, 32, 100}) {
                 LimiterSettings settings = best_->settings;
-                settings.max_iterations = max_iterations;
+                settings.limiting.parameters.max_iterations = max_iterations;
                 try_settings(settings);
             }
             if (best_->settings == centre) return;
@@ -161,8 +196,8 @@ private:
         for (const Trial& trial : trials_) {
             if (!trial.cut_short) candidates.push_back(trial);
         }
-        std::sort(candidates.begin(), candidates.end(),
-                  [this](const Trial& a, const Trial& b) { return goal_.better(a, b); });
+        std::stable_sort(candidates.begin(), candidates.end(),
+                         [this](const Trial& a, const Trial& b) { return goal_.better(a, b); });
         candidates.resize(std::min(candidates.size(), kMaxConfirmations));
         std::optional<Trial> confirmed;
         for (const Trial& candidate : candidates) {
@@ -171,7 +206,7 @@ private:
         }
         // The rest of the scene is harder than its start: more sub-steps, as long as there are more.
         for (const int sub_steps : kSubSteps) {
-            if (sub_steps <= candidates.front().settings.sub_steps) continue;
+            if (sub_steps <= candidates.front().settings.limiting.parameters.sub_steps) continue;
             LimiterSettings settings = candidates.front().settings;
             set_sub_steps(settings, sub_steps);
             add_confirmation(settings, confirmed);
@@ -190,6 +225,7 @@ private:
 
     const TuningGoal& goal_;
     LimiterSettings given_;
+    TuningFreedom freedom_;
     int frames_;
     int search_frames_;
     const TrialRun& run_;
@@ -208,9 +244,9 @@ bool TuningGoal::better(const Trial& trial, const Trial& other) const {
     return meets_target(trial) ? trial.seconds() < other.seconds() : trial.max_area_change < other.max_area_change;
 }
 
-std::optional<Trial> search_settings(const TuningGoal& goal, const LimiterSettings& given, bool tune_regularization,
+std::optional<Trial> search_settings(const TuningGoal& goal, const LimiterSettings& given, const TuningFreedom& freedom,
                                      int frames, const TrialRun& run) {
-    return Search(goal, given, frames, run).best(tune_regularization);
+    return Search(goal, given, freedom, frames, run).best();
 }
 
 }  // namespace apsl::scenes

@@ -20,14 +20,20 @@ struct TuningGoal {
     bool better(const Trial& trial, const Trial& other) const;
 };
 
+/// What the search may change beside sub-steps, steps and how tightly systems are solved.
+struct TuningFreedom {
+    bool regularization = true;  ///< false where each triangle has its own: then steps and solver stay too
+    bool solver = true;          ///< false where the scene names one
+};
+
 /// A trial of these settings over so many frames, cut short where `enough` says so; none where it was interrupted.
 using TrialRun = std::function<std::optional<Trial>(const LimiterSettings& settings, int frames,
                                                     const std::function<bool(const Trial&)>& enough)>;
 
 /// Searches over the first quarter of the frames (30 at least) for the best settings, then confirms the best on all of
 /// them; what fails there makes place for the next best. Starts at `given`, the scene's own settings.
-/// `tune_regularization`: false keeps the regularization. None where a trial was interrupted.
-std::optional<Trial> search_settings(const TuningGoal& goal, const LimiterSettings& given, bool tune_regularization,
+/// None where a trial was interrupted.
+std::optional<Trial> search_settings(const TuningGoal& goal, const LimiterSettings& given, const TuningFreedom& freedom,
                                      int frames, const TrialRun& run);
 
 }  // namespace apsl::scenes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tune/tuning_trial.hpp"
 
+#include "fields.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
 #include "run/scene_document.hpp"
@@ -8,7 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace apsl::scenes {
@@ -21,43 +25,47 @@ double quiet_time(std::vector<double> seconds) {
     return *place;
 }
 
+// A scene that was tuned says so much of itself, whatever the defaults become.
+bool is_always_written(std::string_view name) {
+    constexpr std::string_view names[] = {"sub_steps", "regularization", "tolerance", "max_iterations"};
+    return std::ranges::find(names, name) != std::end(names);
+}
+
+template <class Value>
+nlohmann::ordered_json json_of(Value value) {
+    if constexpr (std::is_enum_v<Value>)
+        return std::string(name_of(value));
+    else if constexpr (std::is_floating_point_v<Value>)
+        return shortest(value);
+    else
+        return value;
+}
+
 }  // namespace
 
-LimiterSettings limiter_settings(const nlohmann::ordered_json& document) {
-    const Parameters standard;
-    const Scene scene;
-    const nlohmann::ordered_json limiting = document.value("strain_limiting", nlohmann::ordered_json::object());
-    LimiterSettings settings;
-    settings.steps_per_frame = document.value("steps_per_frame", scene.steps_per_frame);
-    settings.sub_steps = limiting.value("sub_steps", standard.sub_steps);
-    settings.tolerance = limiting.value("tolerance", shortest(standard.tolerance));
-    settings.max_iterations = limiting.value("max_iterations", standard.max_iterations);
-    settings.kept_pressures = limiting.value("kept_pressures", 0);
-    settings.first_regularization = limiting.value("first_regularization", shortest(standard.first_regularization));
-    settings.stepping = limiting.value("stepping", settings.stepping);
-    settings.regularization = shortest(standard.regularization);
-    if (limiting.contains("regularization") && limiting["regularization"].is_number()) {
-        settings.regularization = limiting["regularization"].get<double>();
-    }
+LimiterSettings limiter_settings(const Scene& scene) {
+    LimiterSettings settings{.steps_per_frame = scene.steps_per_frame,
+                             .limiting = scene.strain_limiting.value_or(StrainLimiting{})};
+    settings.limiting.parameters.time_step = Parameters{}.time_step;
     return settings;
 }
 
-nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const LimiterSettings& settings) {
-    const LimiterSettings before = limiter_settings(document);
+nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const LimiterSettings& before,
+                                     const LimiterSettings& settings) {
     set_steps_per_frame(document, settings.steps_per_frame);
     nlohmann::ordered_json& limiting = document["strain_limiting"];
     if (limiting.is_null()) limiting = nlohmann::ordered_json::object();
-    limiting["sub_steps"] = settings.sub_steps;
-    if (!limiting.contains("regularization") || limiting["regularization"].is_number()) {
-        limiting["regularization"] = settings.regularization;
-    }
-    if (settings.first_regularization != before.first_regularization) {
-        limiting["first_regularization"] = settings.first_regularization;
-    }
-    if (settings.stepping != before.stepping) limiting["stepping"] = settings.stepping;
-    if (settings.kept_pressures != before.kept_pressures) limiting["kept_pressures"] = settings.kept_pressures;
-    limiting["tolerance"] = settings.tolerance;
-    limiting["max_iterations"] = settings.max_iterations;
+    const auto write = [&](const auto& field, const auto& old, const auto& now) {
+        const std::string_view name = field.name;
+        if (now.*field.member == old.*field.member && !is_always_written(name)) return;
+        // A list of α stays.
+        if (name == "regularization" && settings.limiting.options.regularization_per_triangle) return;
+        limiting[field.name] = json_of(now.*field.member);
+    };
+    for_each_field(parameter_fields,
+                   [&](const auto& field) { write(field, before.limiting.parameters, settings.limiting.parameters); });
+    for_each_field(option_fields,
+                   [&](const auto& field) { write(field, before.limiting.options, settings.limiting.options); });
     return document;
 }
 
@@ -68,7 +76,7 @@ std::optional<Trial> run_trial(const nlohmann::ordered_json& document, const std
     SceneCloth cloth = make_scene_cloth(scene);
     FilterStage filter = make_filter_stage(scene, cloth.state, Backend::opencl, device, false);
     Simulation simulation(scene, std::move(cloth), std::move(filter), false);
-    Trial trial{.settings = limiter_settings(document)};
+    Trial trial{.settings = limiter_settings(scene)};
     std::vector<double> limiter_seconds;
     std::vector<double> rest_seconds;
     while (trial.frames < frames && !trial.cut_short) {

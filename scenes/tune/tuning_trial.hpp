@@ -2,6 +2,7 @@
 #pragma once
 
 #include "run/opencl_devices.hpp"
+#include "run/scene.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -15,22 +16,17 @@ namespace apsl::scenes {
 /// What tuning may change of a scene.
 struct LimiterSettings {
     int steps_per_frame = 1;  ///< a frame keeps its length
-    int sub_steps = 10;
-    double regularization = 1.2;         ///< without meaning where the scene has one for each triangle
-    double first_regularization = 0.0;   ///< of the first sub-step; 0: the same in all
-    std::string stepping = "automatic";  ///< as scenes name it
-    int kept_pressures = 0;
-    double tolerance = 0.1;
-    int max_iterations = 50;
+    StrainLimiting limiting;  ///< its time step is not looked at
 
     bool operator==(const LimiterSettings&) const = default;
 };
 
-/// The settings a scene has, standard ones where it names none.
-LimiterSettings limiter_settings(const nlohmann::ordered_json& document);
+/// The settings a scene has, the library's defaults where it names none.
+LimiterSettings limiter_settings(const Scene& scene);
 
-/// The scene with these settings, all else in the order it was in.
-nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const LimiterSettings& settings);
+/// The document of a scene whose settings are `before`, with these: what is the same keeps its words and its order.
+nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const LimiterSettings& before,
+                                     const LimiterSettings& settings);
 
 /// What a run of a scene came to.
 struct Trial {

@@ -67,8 +67,7 @@ std::size_t bytes(const Range& range) {
 template <class Real>
 struct BasicStrainLimiter<Real>::Implementation {
     std::shared_ptr<const Topology> topology;
-    Matrix matrix;
-    Solver solver;
+    Options options;
     int bound_period = 1;
     std::vector<std::uint8_t> shared;  // CsrPattern::shared; its offsets and columns live on in G
     SparseMatrix<Real> G;
@@ -160,10 +159,10 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// One solve of (G + (α − 1) diag G) λ = b at the present geometry; λ is left in `lambda`.
     SolveResult<Real> solve(const Buffers<Real>& buffers, const Parameters& parameters) {
         find_excess(buffers, walked_sub_steps(parameters));
-        if (solver == Solver::chebyshev) return solve_by_chebyshev(parameters);
+        if (options.solver == Solver::chebyshev) return solve_by_chebyshev(parameters);
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         const std::span<const Real> inverse_masses = masses.inverse;
-        if (matrix == Matrix::consistent)
+        if (options.matrix == Matrix::consistent)
             consistent_matrix(*topology, shared, triangles, inverse_masses, G);
         else
             printed_matrix(*topology, shared, triangles, inverse_masses, G);
@@ -194,7 +193,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         const int next = stats.sub_steps + 1;
         if (next == parameters.sub_steps) return;
         if (raises_masses(parameters)) masses.raise(buffers.inverse_masses);
-        if (solver != Solver::chebyshev || next % bound_period != 0) return;
+        if (options.solver != Solver::chebyshev || next % bound_period != 0) return;
         vertex_bounds(*topology, std::span<const TriangleGeometry<Real>>(geometry), direction_bounds);
         for (std::size_t i = 0; i < direction_bounds.size(); ++i)
             if (masses.inverse[i] < buffers.inverse_masses[i]) direction_bounds[i] *= static_cast<Real>(raised_margin);
@@ -340,26 +339,16 @@ struct BasicStrainLimiter<Real>::Implementation {
 };
 
 template <class Real>
-BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> topology, Matrix matrix,
-                                             std::uint32_t kept_pressures, Solver solver, std::uint32_t bound_period)
+BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> topology, const Options& options)
     : implementation_(std::make_unique<Implementation>()) {
     if (!topology) throw Error(ErrorCode::invalid_argument, "topology is null, expected one from Topology::build");
-    if (matrix != Matrix::consistent && matrix != Matrix::printed)
-        throw Error(ErrorCode::invalid_argument, "matrix is " + std::to_string(static_cast<int>(matrix)) +
-                                                     ", expected consistent (0) or printed (1)");
-    if (solver != Solver::conjugate_gradient && solver != Solver::chebyshev)
-        throw Error(ErrorCode::invalid_argument, "solver is " + std::to_string(static_cast<int>(solver)) +
-                                                     ", expected conjugate_gradient (0) or chebyshev (1)");
-    if (solver == Solver::chebyshev && (matrix != Matrix::consistent || kept_pressures > 0))
-        throw Error(ErrorCode::invalid_argument,
-                    "solver is chebyshev, which needs the consistent matrix and no kept_pressures");
-    CsrPattern pattern = topology->csr_pattern(matrix);
-    implementation_->solver = solver;
-    implementation_->bound_period = static_cast<int>(std::clamp<std::uint32_t>(bound_period, 1, 1u << 30));
+    validate(options);
+    CsrPattern pattern = topology->csr_pattern(options.matrix);
+    implementation_->options = options;
+    implementation_->bound_period = static_cast<int>(std::min(options.bound_period, 1u << 30));
     implementation_->topology = std::move(topology);
-    implementation_->matrix = matrix;
     implementation_->kept.assign(
-        kept_pressures,
+        options.kept_pressures,
         TriangleVector<Real>::Zero(static_cast<Eigen::Index>(implementation_->topology->triangle_count())));
     implementation_->G = zero_matrix<Real>(pattern);
     implementation_->shared = std::move(pattern.shared);
@@ -390,12 +379,11 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
 
 template <class Real>
 void BasicStrainLimiter<Real>::enqueue(const Buffers<Real>& buffers, const Parameters& parameters) {
-    validate(parameters);
+    Options options = implementation_->options;
+    options.positions_only = false;
+    options.regularization_per_triangle = !buffers.regularization.empty();
+    validate(options, parameters);
     check(*implementation_->topology, buffers);
-    if (implementation_->solver == Solver::chebyshev &&
-        (!buffers.regularization.empty() || parameters.adaptive_iterations > 0))
-        throw Error(ErrorCode::invalid_argument,
-                    "solver is chebyshev, which needs one regularization for all triangles and adaptive_iterations 0");
     if (!parameters.enabled) {
         implementation_->stats = {};
         implementation_->stats.status = Status::off;

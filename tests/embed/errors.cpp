@@ -39,9 +39,11 @@ TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]"
                   options({.matrix = Matrix::printed, .execution = Execution::one_group}));
     check_invalid("execution is one_group, which needs the consistent matrix, matrix-free",
                   options({.apply = Apply::assembled_csr, .execution = Execution::one_group}));
-    check_invalid("kept_pressures is 4294967295, expected at most 65536", options({.kept_pressures = UINT32_MAX}));
-    check_invalid("bound_period is 0, expected at least 1", options({.bound_period = 0}));
-    check_invalid("unknown solver", options({.solver = static_cast<Solver>(2)}));
+    check_invalid("kept_pressures is 4294967295, expected a whole number >= 0 and <= 65536",
+                  options({.kept_pressures = UINT32_MAX}));
+    check_invalid("bound_period is 0, expected a whole number >= 1", options({.bound_period = 0}));
+    check_invalid("solver is 2, expected conjugate_gradient (0) or chebyshev (1)",
+                  options({.solver = static_cast<Solver>(2)}));
     check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",
                   options({.matrix = Matrix::printed, .solver = Solver::chebyshev}));
     check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",

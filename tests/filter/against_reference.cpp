@@ -177,7 +177,7 @@ TEST_CASE("adaptive alpha: raised, restored and kept between calls as the refere
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
             StrainLimiter limiter(device().context, device().id, cloth.topology, options);
-            reference::StrainLimiter expected(cloth.topology, options.matrix);
+            reference::StrainLimiter expected(cloth.topology, options);
             int unconverged = 0;
             for (const Parameters& parameters : {tight_budget, tight_budget, tight_budget, roomy, roomy, roomy}) {
                 const CallerBuffers buffers({&cloth, 1}, options);
@@ -250,7 +250,7 @@ TEST_CASE("kept pressures: the guess a call starts from is the reference's, and 
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
             StrainLimiter limiter(device().context, device().id, cloth.topology, options);
-            reference::StrainLimiter expected(cloth.topology, options.matrix, options.kept_pressures);
+            reference::StrainLimiter expected(cloth.topology, options);
             int cold = 0, warm = 0;
             for (const int call : {0, 1, 2, 3}) {
                 cloth.positions[40] = call == 2 ? std::nan("") : first_coordinate;

@@ -36,7 +36,9 @@ Filtered filter_on_device(const MovingCloth& cloth, const Options& options, cons
 }
 
 Filtered filter_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
-    reference::StrainLimiter limiter(cloth.topology, options.matrix, 0, options.solver, options.bound_period);
+    Options from_zero = options;
+    from_zero.kept_pressures = 0;
+    reference::StrainLimiter limiter(cloth.topology, from_zero);
     std::vector<double> velocities = cloth.velocities;
     std::span<const double> alpha;
     if (options.regularization_per_triangle) alpha = cloth.regularization;

@@ -49,7 +49,7 @@ void check_filtered(Arrays& arrays, const Build& build, const Parameters& parame
         CAPTURE(c);
         const Cloth& cloth = arrays.sources[c];
         std::vector<double> want = cloth.velocities;
-        reference::StrainLimiter limiter(cloth.topology, Matrix::consistent);
+        reference::StrainLimiter limiter(cloth.topology);
         std::span<const double> alpha;
         if (build.alpha_per_triangle) alpha = cloth.regularization;
         limiter.enqueue({cloth.positions, want, cloth.inverse_masses, cloth.rest_areas, alpha}, parameters);

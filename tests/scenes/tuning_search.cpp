@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tune/tuning_search.hpp"
 
+#include "run/parse_scene.hpp"
 #include "tune/scene_text.hpp"
 
 #include <catch2/catch.hpp>
+#include <set>
 
+using namespace apsl;
 using namespace apsl::scenes;
 
 namespace {
@@ -24,9 +27,10 @@ struct MadeUp {
         while (trial.frames < count && !trial.cut_short) {
             ++frames;
             const double harder = trial.frames >= hard_from ? 3.0 : 1.0;
-            trial.max_area_change = std::max(trial.max_area_change, harder * 0.2 / (s.sub_steps * s.steps_per_frame));
-            const double least = s.first_regularization > 0.0 ? s.first_regularization : s.regularization;
-            trial.limiter_seconds = 1e-3 * s.sub_steps * s.steps_per_frame * (1.0 + 0.1 * (2.0 - least));
+            const apsl::Parameters& p = s.limiting.parameters;
+            trial.max_area_change = std::max(trial.max_area_change, harder * 0.2 / (p.sub_steps * s.steps_per_frame));
+            const double least = p.first_regularization > 0.0f ? p.first_regularization : p.regularization;
+            trial.limiter_seconds = 1e-3 * p.sub_steps * s.steps_per_frame * (1.0 + 0.1 * (2.0 - least));
             trial.rest_seconds = 1e-2 * s.steps_per_frame;
             ++trial.frames;
             trial.cut_short = trial.frames < count && enough(trial);
@@ -35,11 +39,18 @@ struct MadeUp {
     }
 };
 
+LimiterSettings ten_sub_steps() {
+    LimiterSettings settings;
+    settings.limiting.parameters.sub_steps = 10;
+    settings.limiting.parameters.regularization = 1.2f;
+    return settings;
+}
+
 Trial found(const TuningGoal& goal, MadeUp& cloth, int frames) {
     const TrialRun run = [&](const auto& settings, int count, const auto& enough) {
         return cloth(settings, count, enough);
     };
-    return search_settings(goal, LimiterSettings{}, true, frames, run).value();
+    return search_settings(goal, ten_sub_steps(), {}, frames, run).value();
 }
 
 }  // namespace
@@ -47,10 +58,11 @@ Trial found(const TuningGoal& goal, MadeUp& cloth, int frames) {
 TEST_CASE("the search finds the fewest sub-steps that meet the target") {
     MadeUp cloth;
     const Trial best = found({.target = 0.026, .budget_seconds = {}}, cloth, 200);
-    CHECK(best.settings.sub_steps == 8);
+    CHECK(best.settings.limiting.parameters.sub_steps == 8);
     CHECK(best.settings.steps_per_frame == 1);
-    CHECK(best.settings.regularization == 1.2);
-    CHECK(best.settings.stepping == "whole_step");  // small steps would do no better
+    CHECK(best.settings.limiting.parameters.regularization == 1.2f);
+    CHECK(best.settings.limiting.parameters.stepping == Stepping::whole_step);  // small steps would do no better
+    CHECK(best.settings.limiting.options.solver == Solver::conjugate_gradient);
     CHECK(best.frames == 200);
     CHECK(cloth.frames < 60 * cloth.trials);  // most trials are short
 }
@@ -59,7 +71,7 @@ TEST_CASE("frames that only a whole run has make for more sub-steps") {
     MadeUp cloth{.hard_from = 150};
     const Trial best = found({.target = 0.026, .budget_seconds = {}}, cloth, 200);
     CHECK(best.max_area_change <= 0.026);
-    CHECK(best.settings.sub_steps == 32);  // 0.6 / 26 would do, the next that is tried is 32
+    CHECK(best.settings.limiting.parameters.sub_steps == 32);  // 0.6 / 26 would do, the next that is tried is 32
     CHECK(best.frames == 200);
 }
 
@@ -69,32 +81,67 @@ TEST_CASE("within a budget the closest to a target out of reach") {
     const Trial best = found(goal, cloth, 60);
     CHECK(goal.within_budget(best));
     CHECK_FALSE(goal.meets_target(best));
-    CHECK(best.settings.sub_steps * best.settings.steps_per_frame == 10);  // what is given to start from
+    CHECK(best.settings.limiting.parameters.sub_steps * best.settings.steps_per_frame ==
+          10);  // what is given to start from
 }
 
 TEST_CASE("an interruption ends the search") {
-    CHECK_FALSE(search_settings({}, LimiterSettings{}, true, 60,
+    CHECK_FALSE(search_settings({}, LimiterSettings{}, {}, 60,
                                 [](const auto&, int, const auto&) { return std::optional<Trial>(); }));
+}
+
+TEST_CASE("a solver that is given stays, and settings that a limiter refuses are not tried") {
+    const auto solvers_tried = [](const LimiterSettings& given, const TuningFreedom& freedom) {
+        std::set<Solver> tried;
+        const TrialRun run = [&, cloth = MadeUp{}](const auto& settings, int count, const auto& enough) mutable {
+            validate(settings.limiting.options, settings.limiting.parameters);
+            tried.insert(settings.limiting.options.solver);
+            return cloth(settings, count, enough);
+        };
+        CHECK(search_settings({.target = 0.026, .budget_seconds = {}}, given, freedom, 60, run));
+        return tried;
+    };
+    LimiterSettings given = ten_sub_steps();
+    CHECK(solvers_tried(given, {}) == std::set{Solver::conjugate_gradient, Solver::chebyshev});
+    CHECK(solvers_tried(given, {.solver = false}) == std::set{Solver::conjugate_gradient});
+    given.limiting.options.matrix = Matrix::printed;
+    CHECK(solvers_tried(given, {}) == std::set{Solver::conjugate_gradient});
+    given.limiting.options = {.solver = Solver::chebyshev};
+    CHECK(solvers_tried(given, {.solver = false}) == std::set{Solver::chebyshev});
 }
 
 TEST_CASE("settings change nothing else in a scene") {
     const auto document = nlohmann::ordered_json::parse(
-        R"({"time_step": 0.01, "strain_limiting": {"matrix": "consistent", "regularization": [1.1, 1.2]}, "frames": 3})");
-    const auto changed = with_settings(document, {.steps_per_frame = 2, .sub_steps = 3, .regularization = 1.5});
-    CHECK(changed.dump() ==
-          R"({"time_step":0.005,"strain_limiting":{"matrix":"consistent","regularization":[1.1,1.2],"sub_steps":3,)"
-          R"("tolerance":0.1,"max_iterations":50},"frames":3,"steps_per_frame":2})");
-    CHECK(limiter_settings(changed).sub_steps == 3);
-    const LimiterSettings rising{.sub_steps = 4,
-                                 .regularization = 1.05,
-                                 .first_regularization = 1.01,
-                                 .stepping = "small_steps",
-                                 .kept_pressures = 4};
-    const auto risen = with_settings(document, rising);
+        R"({"mesh": {"grid": {}}, "time_step": 0.01, "strain_limiting": {"matrix": "consistent", )"
+        R"("regularization": [1.1, 1.2]}, "frames": 3})");
+    const auto settings_of = [](const nlohmann::ordered_json& scene) {
+        return limiter_settings(parse_scene(nlohmann::json(scene), "scene.json"));
+    };
+    const LimiterSettings before = settings_of(document);
+    LimiterSettings fewer = before;
+    fewer.steps_per_frame = 2;
+    fewer.limiting.parameters.sub_steps = 3;
+    const auto changed = with_settings(document, before, fewer);
+    CHECK(
+        changed.dump() ==
+        R"({"mesh":{"grid":{}},"time_step":0.005,"strain_limiting":{"matrix":"consistent","regularization":[1.1,1.2],)"
+        R"("sub_steps":3,"tolerance":0.1,"max_iterations":50},"frames":3,"steps_per_frame":2})");
+    CHECK(settings_of(changed) == fewer);
+
+    const auto plain = nlohmann::ordered_json::parse(R"({"mesh": {"grid": {}}})");
+    LimiterSettings rising;
+    rising.limiting.options.kept_pressures = 4;
+    rising.limiting.options.solver = Solver::chebyshev;
+    rising.limiting.parameters.sub_steps = 4;
+    rising.limiting.parameters.first_regularization = 1.01f;
+    rising.limiting.parameters.stepping = Stepping::small_steps;
+    const auto risen = with_settings(plain, settings_of(plain), rising);
     CHECK(risen["strain_limiting"]["first_regularization"] == 1.01);
     CHECK(risen["strain_limiting"]["stepping"] == "small_steps");
+    CHECK(risen["strain_limiting"]["solver"] == "chebyshev");
     CHECK(risen["strain_limiting"]["kept_pressures"] == 4);
-    CHECK(limiter_settings(risen) == rising);
+    rising.limiting.options.kept_pressures = 0;  // with it the scene would be refused
+    CHECK(settings_of(with_settings(plain, settings_of(plain), rising)) == rising);
 }
 
 TEST_CASE("a scene's text is the scene, short things in one line") {

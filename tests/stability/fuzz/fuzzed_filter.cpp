@@ -16,16 +16,6 @@ std::vector<std::shared_ptr<const Topology>> topologies_of(const FuzzCase& c) {
     return topologies;
 }
 
-bool same_options(const Options& a, const Options& b) {
-    return a.matrix == b.matrix && a.apply == b.apply && a.execution == b.execution &&
-           a.work_group_size == b.work_group_size && a.position_stride == b.position_stride &&
-           a.velocity_stride == b.velocity_stride && a.position_component_stride == b.position_component_stride &&
-           a.velocity_component_stride == b.velocity_component_stride &&
-           a.inverse_mass_stride == b.inverse_mass_stride &&
-           a.regularization_per_triangle == b.regularization_per_triangle && a.kept_pressures == b.kept_pressures &&
-           a.solver == b.solver && a.bound_period == b.bound_period;
-}
-
 }  // namespace
 
 DeviceFilter::DeviceFilter(const FuzzCase& c)
@@ -36,7 +26,7 @@ DeviceFilter::DeviceFilter(const FuzzCase& c)
 }
 
 bool DeviceFilter::fits(const FuzzCase& c) const {
-    return !remembers(c) && same_options(c.options, options_) && topologies_of(c) == topologies_;
+    return !remembers(c) && c.options == options_ && topologies_of(c) == topologies_;
 }
 
 std::vector<Filtered> DeviceFilter::call(const std::vector<MovingCloth>& cloths,
@@ -64,9 +54,7 @@ std::vector<Filtered> DeviceFilter::call(const std::vector<MovingCloth>& cloths,
 template <class Real>
 ReferenceFilter<Real>::ReferenceFilter(const FuzzCase& c)
     : regularization_per_triangle_(c.options.regularization_per_triangle) {
-    for (const MovingCloth& cloth : c.cloths)
-        limiters_.emplace_back(cloth.topology, c.options.matrix, c.options.kept_pressures, c.options.solver,
-                               c.options.bound_period);
+    for (const MovingCloth& cloth : c.cloths) limiters_.emplace_back(cloth.topology, c.options);
 }
 
 template <class Real>

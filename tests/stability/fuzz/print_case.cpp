@@ -1,16 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "stability/fuzz/print_case.hpp"
 
+#include "fields.hpp"
+
+#include <tuple>
+#include <type_traits>
+
 namespace apsl::test {
 namespace {
 
-void print(const Parameters& p, std::ostream& out) {
-    out << "{.time_step = " << p.time_step << ", .regularization = " << p.regularization
-        << ", .sub_steps = " << p.sub_steps << ", .target_area_change = " << p.target_area_change
-        << ", .tolerance = " << p.tolerance << ", .max_iterations = " << p.max_iterations
-        << ", .adaptive_iterations = " << p.adaptive_iterations
-        << ", .first_regularization = " << p.first_regularization << ", .stepping = " << static_cast<int>(p.stepping)
-        << ", .enabled = " << p.enabled << "}";
+// What differs from the default, as it is written in C++: ".sub_steps = 4, .stepping = small_steps".
+template <class Struct, class... Fields>
+void print_changes(const Struct& values, const std::tuple<Fields...>& fields, std::ostream& out) {
+    for_each_field(fields, [&](const auto& field) {
+        const auto value = values.*field.member;
+        if (value == Struct{}.*field.member) return;
+        out << '.' << field.name << " = ";
+        if constexpr (std::is_enum_v<std::remove_cv_t<decltype(value)>>)
+            out << name_of(value);
+        else
+            out << value;
+        out << ", ";
+    });
 }
 
 const char* array_name(std::vector<double> MovingCloth::* array) {
@@ -41,16 +52,10 @@ void print(const MovingCloth& cloth, bool with_alpha, std::ostream& out) {
 
 void print(const FuzzCase& c, std::ostream& out) {
     out.precision(9);
-    out << "options: " << (c.options.matrix == Matrix::printed ? "printed" : "consistent")
-        << (c.options.apply == Apply::assembled_csr ? ", assembled" : ", matrix-free") << ", execution "
-        << static_cast<int>(c.options.execution) << ", work-group size " << c.options.work_group_size << ", strides "
-        << c.options.position_stride << " and " << c.options.velocity_stride << ", from component to component "
-        << c.options.position_component_stride << ", of masses " << c.options.inverse_mass_stride
-        << (c.options.regularization_per_triangle ? ", alpha per triangle" : "") << ", kept pressures "
-        << c.options.kept_pressures
-        << (c.options.solver == Solver::chebyshev ? ", by Chebyshev, bounds for sub-steps " : "")
-        << (c.options.solver == Solver::chebyshev ? std::to_string(c.options.bound_period) : "") << ", offset "
-        << c.offset << '\n';
+    out << "options: ";
+    print_changes(c.options, option_fields, out);
+    print_changes(c.options, layout_fields, out);
+    out << "offset " << c.offset << '\n';
     for (std::size_t n = 0; n < c.cloths.size(); ++n) {
         out << "cloth " << n << ":\n";
         print(c.cloths[n], c.options.regularization_per_triangle, out);
@@ -64,7 +69,7 @@ void print(const FuzzCase& c, std::ostream& out) {
         out << ":\n";
         for (std::size_t n = 0; n < call.parameters.size(); ++n) {
             out << "  cloth " << n << ' ';
-            print(call.parameters[n], out);
+            print_changes(call.parameters[n], parameter_fields, out);
             out << '\n';
         }
     }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "stability/fuzz/shrink_case.hpp"
 
+#include "fields.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 namespace apsl::test {
@@ -96,31 +99,18 @@ private:
         changed |= attempt([](FuzzCase& c) { return std::exchange(c.in_single_precision, false); });
         changed |= attempt([](FuzzCase& c) {
             bool any = false;
-            for (const auto stride :
-                 {&Options::position_stride, &Options::velocity_stride, &Options::position_component_stride,
-                  &Options::velocity_component_stride, &Options::inverse_mass_stride})
-                any |= reset(c.options, stride);
+            for_each_field(layout_fields, [&](const auto& field) { any |= reset(c.options, field.member); });
             return any;
         });
-        changed |= attempt([](FuzzCase& c) { return reset(c.options, &Options::regularization_per_triangle); });
-        changed |= attempt([](FuzzCase& c) { return reset(c.options, &Options::kept_pressures); });
-        changed |= attempt([](FuzzCase& c) { return reset(c.options, &Options::work_group_size); });
-        changed |= attempt([](FuzzCase& c) { return reset(c.options, &Options::matrix); });
-        changed |= attempt([](FuzzCase& c) { return reset(c.options, &Options::apply); });
+        for_each_field(option_fields, [&](const auto& field) {
+            changed |= attempt([&](FuzzCase& c) { return reset(c.options, field.member); });
+        });
         for (std::size_t k = 0; k < case_.calls.size(); ++k)
             for (std::size_t n = 0; n < case_.cloths.size(); ++n) {
-                const auto field = [&](auto Parameters::* which) {
-                    changed |= attempt([&](FuzzCase& c) { return reset(c.calls[k].parameters[n], which); });
-                };
-                field(&Parameters::first_regularization);
-                field(&Parameters::adaptive_iterations);
-                field(&Parameters::target_area_change);
-                field(&Parameters::tolerance);
-                field(&Parameters::max_iterations);
-                field(&Parameters::regularization);
-                field(&Parameters::time_step);
-                field(&Parameters::stepping);
-                field(&Parameters::enabled);
+                for_each_field(parameter_fields, [&](const auto& field) {
+                    if (field.name == std::string_view("sub_steps")) return;  // its default is many
+                    changed |= attempt([&](FuzzCase& c) { return reset(c.calls[k].parameters[n], field.member); });
+                });
                 changed |=
                     attempt([&](FuzzCase& c) { return std::exchange(c.calls[k].parameters[n].sub_steps, 1) > 1; });
             }

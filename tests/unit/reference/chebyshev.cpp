@@ -147,7 +147,7 @@ TEST_CASE("Chebyshev: the filter brings areas back, and says what it did", "[ref
     const std::vector<double> start = cloth.positions;
     for (double& x : cloth.positions) x *= 1.1;  // areas off by 21 %
     std::vector<double> velocities(cloth.positions.size(), 0.0);
-    reference::StrainLimiter limiter(cloth.topology, Matrix::consistent, 0, Solver::chebyshev);
+    reference::StrainLimiter limiter(cloth.topology, {.solver = Solver::chebyshev});
     limiter.enqueue({cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, {}},
                     {.regularization = 1.1f, .sub_steps = 10, .stepping = Stepping::whole_step});
     const Stats stats = limiter.read_stats();
@@ -161,10 +161,12 @@ TEST_CASE("Chebyshev: the filter brings areas back, and says what it did", "[ref
 
 TEST_CASE("Chebyshev: what it does not take is refused", "[reference]") {
     const test::SampleCloth cloth = test::grid_cloth(3, 3, test::Diagonals::uniform);
-    CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, Matrix::printed, 0, Solver::chebyshev), Error);
-    CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, Matrix::consistent, 1, Solver::chebyshev), Error);
-    CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, Matrix::consistent, 0, static_cast<Solver>(2)), Error);
-    reference::StrainLimiter limiter(cloth.topology, Matrix::consistent, 0, Solver::chebyshev);
+    CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, {.matrix = Matrix::printed, .solver = Solver::chebyshev}),
+                    Error);
+    CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, {.kept_pressures = 1, .solver = Solver::chebyshev}),
+                    Error);
+    CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, {.solver = static_cast<Solver>(2)}), Error);
+    reference::StrainLimiter limiter(cloth.topology, {.solver = Solver::chebyshev});
     std::vector<double> velocities(cloth.positions.size(), 0.0);
     const std::vector<double> alpha(cloth.rest_areas.size(), 2.0);
     CHECK_THROWS_AS(

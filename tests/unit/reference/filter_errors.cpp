@@ -88,18 +88,17 @@ TEST_CASE("numbers out of range are refused by name and place") {
     }
     SECTION("alpha below one for all") {
         call.parameters.regularization = 0.5f;
-        CHECK(call.message() ==
-              "regularization is 0.5, expected a finite number >= 1 (alpha multiplies the diagonal of G)");
+        CHECK(call.message() == "regularization is 0.5, expected a finite number >= 1");
     }
     SECTION("no time step") {
         call.parameters.time_step = 0;
-        CHECK(call.message() == "time_step is 0, expected a finite number > 0 (seconds)");
+        CHECK(call.message() == "time_step is 0, expected a finite number > 0 (s)");
     }
 }
 
 TEST_CASE("a limiter needs a topology and a known matrix") {
     CHECK_THROWS_WITH(reference::StrainLimiter(nullptr), "topology is null, expected one from Topology::build");
     const auto topology = Topology::build(test::right_triangle().triangles, 3);
-    CHECK_THROWS_WITH(reference::StrainLimiter(topology, static_cast<Matrix>(7)),
+    CHECK_THROWS_WITH(reference::StrainLimiter(topology, {.matrix = static_cast<Matrix>(7)}),
                       "matrix is 7, expected consistent (0) or printed (1)");
 }

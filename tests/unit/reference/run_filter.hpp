@@ -27,7 +27,7 @@ Filtered<Real> run_filter(const SampleCloth& cloth, const std::vector<double>& v
     const auto inverse_masses = cast(cloth.inverse_masses);
     const auto rest_areas = cast(cloth.rest_areas);
     const auto alpha = cast(regularization);
-    reference::BasicStrainLimiter<Real> limiter(cloth.topology, matrix);
+    reference::BasicStrainLimiter<Real> limiter(cloth.topology, {.matrix = matrix});
     limiter.enqueue({positions, result.velocities, inverse_masses, rest_areas, alpha}, parameters);
     result.stats = limiter.read_stats();
     return result;

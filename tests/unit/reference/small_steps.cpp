@@ -21,7 +21,7 @@ struct Altitude {
 
     std::pair<double, Stats> speed_after(double speed, const Parameters& parameters) const {
         std::vector<double> velocities{0, 0, 0, 0, 0, 0, 0, speed, 0};
-        StrainLimiter limiter(topology, Matrix::consistent);
+        StrainLimiter limiter(topology);
         limiter.enqueue({positions, velocities, inverse_masses, rest_areas, {}}, parameters);
         return {velocities[7], limiter.read_stats()};
     }

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+//
+// The fields of Options and Parameters: names, ranges, units and a line of documentation, once. From these come the
+// checks of validate(), the keys of scenes, Python's records, the printing of fuzzed cases, and by
+// docs/write_fields.py the lists in the documents and the schema of scenes. A field that is missing here stops the
+// compiler.
+#pragma once
+
+#include <apsl/options.hpp>
+#include <apsl/parameters.hpp>
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+namespace apsl {
+
+/// What a number may be: from `least` to `greatest`, without an end that is excluded.
+struct Bounds {
+    double least = -std::numeric_limits<double>::infinity();
+    double greatest = std::numeric_limits<double>::infinity();
+    bool least_excluded = false;
+    bool greatest_excluded = false;
+    const char* zero = nullptr;  ///< what 0 means, where it is legal beside the rest
+
+    constexpr bool hold(double value) const {
+        if (zero && value == 0.0) return true;
+        return (least_excluded ? value > least : value >= least) &&
+               (greatest_excluded ? value < greatest : value <= greatest);
+    }
+};
+
+template <class Struct, class Value>
+struct Field {
+    const char* name;
+    Value Struct::* member;
+    Bounds bounds;  ///< of a number
+    const char* unit;
+    const char* text;  ///< documentation, a line
+};
+
+inline constexpr Bounds any_whole{.least = 0.0};
+inline constexpr Bounds at_least_one{.least = 1.0};
+
+inline constexpr std::tuple parameter_fields{
+    Field{"time_step", &Parameters::time_step, Bounds{.least = 0.0, .least_excluded = true}, "s", "Δt of Algorithm 1."},
+    Field{"regularization", &Parameters::regularization, at_least_one, "",
+          "α, multiplies the diagonal of G (Section 4). Not read where each triangle has its own."},
+    Field{"sub_steps", &Parameters::sub_steps, any_whole, "", "Solves a call, at most."},
+    Field{"target_area_change", &Parameters::target_area_change, Bounds{.least = 0.0}, "",
+          "No further sub-step once every |A − A⁰| / A⁰ is at or below it."},
+    Field{"tolerance", &Parameters::tolerance, Bounds{.least = 0.0, .greatest = 1.0, .greatest_excluded = true}, "",
+          "CG stops at this residual over the right-hand side; in small steps at three times it."},
+    Field{"max_iterations", &Parameters::max_iterations, at_least_one, "", "CG iterations a solve, at most."},
+    Field{
+        "adaptive_iterations", &Parameters::adaptive_iterations, any_whole, "",
+        "0: α stays as given. Otherwise a solve with more CG iterations than this doubles α − 1 for the next, and one "
+        "with at most half of it lowers α again towards the given value."},
+    Field{"first_regularization", &Parameters::first_regularization,
+          Bounds{.least = 1.0, .least_excluded = true, .zero = "the same in every sub-step"}, "",
+          "α of the first sub-step. From there to regularization, in the last, α − 1 changes by the same factor a "
+          "sub-step. 0: α is the same in all."},
+    Field{"stepping", &Parameters::stepping, Bounds{}, "",
+          "Which positions each sub-step linearises about. whole_step: the end of the step. small_steps: all but the "
+          "last move on by an equal part of the step and correct there. automatic: small steps from 20 sub-steps up."},
+    Field{"enabled", &Parameters::enabled, Bounds{}, "", "false: the cloth is left alone."},
+};
+
+inline constexpr std::tuple option_fields{
+    Field{"matrix", &Options::matrix, Bounds{}, "",
+          "What couples the pressures. consistent: shared vertices. printed: shared edges, Eq. (4) as printed."},
+    Field{"apply", &Options::apply, Bounds{}, "", "How the device applies the matrix."},
+    Field{"execution", &Options::execution, Bounds{}, "",
+          "How the device divides a call. many_groups: a launch for each step of the filter. one_group: one work-group "
+          "for all of it. automatic: one_group for small cloths."},
+    Field{"work_group_size", &Options::work_group_size, any_whole, "",
+          "Work-items a group, a power of two. 0: what suits the device."},
+    Field{"regularization_per_triangle", &Options::regularization_per_triangle, Bounds{}, "",
+          "Each triangle has its own α, given with every call."},
+    Field{"kept_pressures", &Options::kept_pressures, Bounds{.least = 0.0, .greatest = 65536.0}, "",
+          "The pressures of this many sub-steps are the first guess for the solves of the next call. 0: solves start "
+          "from zero."},
+    Field{"solver", &Options::solver, Bounds{}, "",
+          "chebyshev: a fixed polynomial with the reach of α in place of CG, one launch an iteration. It requires "
+          "matrix consistent, apply matrix_free, one α for all triangles, kept_pressures 0 and adaptive_iterations 0."},
+    Field{"bound_period", &Options::bound_period, at_least_one, "",
+          "By chebyshev: sub-steps from one bound of the matrix to the next. 1 for garments; as many as there are "
+          "sub-steps where triangles keep their shape."},
+};
+
+/// Of the caller's buffers.
+inline constexpr std::tuple layout_fields{
+    Field{"position_stride", &Options::position_stride, at_least_one, "floats", "From one position to the next."},
+    Field{"velocity_stride", &Options::velocity_stride, at_least_one, "floats", "From one velocity to the next."},
+    Field{"position_component_stride", &Options::position_component_stride, at_least_one, "floats",
+          "From a position's x to its y, and from y to z."},
+    Field{"velocity_component_stride", &Options::velocity_component_stride, at_least_one, "floats",
+          "The same of velocities."},
+    Field{"inverse_mass_stride", &Options::inverse_mass_stride, at_least_one, "floats",
+          "From one inverse mass to the next."},
+    Field{"positions_only", &Options::positions_only, Bounds{}, "",
+          "There are no velocities: a call corrects the positions at the end of the step in place."},
+};
+
+/// An enumeration's values and their names.
+template <class Enum>
+inline constexpr std::array<std::pair<Enum, const char*>, 0> names_of{};
+template <>
+inline constexpr std::array names_of<Matrix>{std::pair{Matrix::consistent, "consistent"},
+                                             std::pair{Matrix::printed, "printed"}};
+template <>
+inline constexpr std::array names_of<Apply>{std::pair{Apply::assembled_csr, "assembled_csr"},
+                                            std::pair{Apply::matrix_free, "matrix_free"}};
+template <>
+inline constexpr std::array names_of<Execution>{std::pair{Execution::automatic, "automatic"},
+                                                std::pair{Execution::many_groups, "many_groups"},
+                                                std::pair{Execution::one_group, "one_group"}};
+template <>
+inline constexpr std::array names_of<Stepping>{std::pair{Stepping::automatic, "automatic"},
+                                               std::pair{Stepping::whole_step, "whole_step"},
+                                               std::pair{Stepping::small_steps, "small_steps"}};
+template <>
+inline constexpr std::array names_of<Solver>{std::pair{Solver::conjugate_gradient, "conjugate_gradient"},
+                                             std::pair{Solver::chebyshev, "chebyshev"}};
+
+/// The name of an enumeration's value; empty where it has none.
+template <class Enum>
+constexpr std::string_view name_of(Enum value) {
+    for (const auto& [known, name] : names_of<Enum>)
+        if (known == value) return name;
+    return {};
+}
+
+/// `action(field)` of every field of a table.
+template <class Action, class... Fields>
+void for_each_field(const std::tuple<Fields...>& table, const Action& action) {
+    std::apply([&](const auto&... field) { (action(field), ...); }, table);
+}
+
+struct AnyValue {
+    template <class Value>
+    operator Value() const;
+};
+
+/// Number of fields of a plain struct: how many values its braces take.
+template <class Struct, class... Values>
+consteval std::size_t field_count() {
+    if constexpr (requires { Struct{Values{}..., AnyValue{}}; }) {
+        return field_count<Struct, Values..., AnyValue>();
+    } else {
+        return sizeof...(Values);
+    }
+}
+
+static_assert(std::tuple_size_v<decltype(parameter_fields)> == field_count<Parameters>(),
+              "a field of apsl::Parameters is missing in parameter_fields");
+static_assert(std::tuple_size_v<decltype(option_fields)> + std::tuple_size_v<decltype(layout_fields)> ==
+                  field_count<Options>(),
+              "a field of apsl::Options is missing in option_fields or layout_fields");
+
+}  // namespace apsl

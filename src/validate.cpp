@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "fields.hpp"
+#include "finite.hpp"
+
+#include <apsl/error.hpp>
+
+#include <bit>
+#include <sstream>
+#include <string>
+#include <type_traits>
+
+namespace apsl {
+namespace {
+
+[[noreturn]] void invalid(const std::string& what) {
+    throw Error(ErrorCode::invalid_argument, what);
+}
+
+std::string number(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
+std::string described(const Bounds& bounds, const char* kind, const std::string& unit) {
+    std::string text;
+    if (bounds.zero) text = std::string("0 (") + bounds.zero + ") or ";
+    text += kind;
+    text += bounds.least_excluded ? " > " : " >= ";
+    text += number(bounds.least);
+    if (bounds.greatest < std::numeric_limits<double>::infinity())
+        text += (bounds.greatest_excluded ? " and < " : " and <= ") + number(bounds.greatest);
+    return unit.empty() ? text : text + " (" + unit + ")";
+}
+
+template <class Enum>
+std::string listed() {
+    std::string text;
+    std::size_t left = names_of<Enum>.size();
+    for (const auto& [value, name] : names_of<Enum>) {
+        text += name;
+        text += " (" + std::to_string(static_cast<int>(value)) + ")";
+        --left;
+        text += left > 1 ? ", " : left == 1 ? " or " : "";
+    }
+    return text;
+}
+
+template <class Struct, class Value>
+void check(const Struct& given, const Field<Struct, Value>& field) {
+    const Value value = given.*field.member;
+    const auto refuse = [&](const auto& shown, const std::string& expected) {
+        std::ostringstream text;
+        text << field.name << " is " << shown << ", expected " << expected;
+        invalid(text.str());
+    };
+    if constexpr (std::is_enum_v<Value>) {
+        if (name_of(value).empty()) refuse(static_cast<int>(value), listed<Value>());
+    } else if constexpr (std::is_floating_point_v<Value>) {
+        if (!is_finite(value) || !field.bounds.hold(value)) refuse(value, described(field.bounds, "a finite number", field.unit));
+    } else if constexpr (!std::is_same_v<Value, bool>) {
+        if (!field.bounds.hold(value)) refuse(value, described(field.bounds, "a whole number", field.unit));
+    }
+}
+
+}  // namespace
+
+void validate(const Parameters& parameters) {
+    for_each_field(parameter_fields, [&](const auto& field) { check(parameters, field); });
+    if (parameters.first_regularization != 0.0f && !(parameters.regularization > 1.0f))
+        invalid("regularization is " + number(parameters.regularization) +
+                ", expected a number > 1 where first_regularization is given");
+}
+
+void validate(const Options& options) {
+    for_each_field(option_fields, [&](const auto& field) { check(options, field); });
+    if (options.work_group_size != 0 && !std::has_single_bit(options.work_group_size))
+        invalid("work_group_size is " + std::to_string(options.work_group_size) + ", expected a power of two");
+    const bool matrix_free = options.matrix == Matrix::consistent && options.apply == Apply::matrix_free;
+    if (options.execution == Execution::one_group) {
+        if (!matrix_free) invalid("execution is one_group, which needs the consistent matrix, matrix-free");
+        if (options.solver != Solver::conjugate_gradient)
+            invalid("execution is one_group, which needs solver conjugate_gradient");
+    }
+    if (options.solver == Solver::chebyshev) {
+        if (!matrix_free) invalid("solver is chebyshev, which needs the consistent matrix, matrix-free");
+        if (options.kept_pressures > 0) invalid("solver is chebyshev, which takes no kept_pressures");
+        if (options.regularization_per_triangle)
+            invalid("solver is chebyshev, which needs one regularization for all triangles");
+    }
+}
+
+void validate(const Options& options, const Parameters& parameters) {
+    validate(options);
+    validate(parameters);
+    if (options.positions_only && parameters.stepping == Stepping::small_steps)
+        invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
+    if (options.solver == Solver::chebyshev && parameters.adaptive_iterations > 0)
+        invalid("adaptive_iterations is " + std::to_string(parameters.adaptive_iterations) +
+                ", expected 0: Options::solver is chebyshev, which has no iterations to go by");
+}
+
+}  // namespace apsl
