@@ -74,7 +74,7 @@ std::string summary_text(const RunReport& report) {
             100.0 * summary.worsened->initial_area_change);
     }
     if (filtered) {
-        text += format("  CG iterations          %.1f a solve, %lld solves\n", summary.cg_iterations_per_solve,
+        text += format("  iterations             %.1f a solve, %lld solves\n", summary.cg_iterations_per_solve,
                        static_cast<long long>(summary.solves));
     }
     text += format("  time a frame           %.2f ms in all; integration %.2f ms", 1e3 * summary.step_seconds_per_frame,

@@ -387,3 +387,16 @@ TEST_CASE("the filter agrees with the reference: small steps", "[filter]") {
             check_against_reference(cloth, options, walk);
         }
 }
+
+TEST_CASE("the filter agrees with the reference: small steps from a start with other areas than at rest", "[filter]") {
+    MovingCloth cloth = moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 2);
+    for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
+        cloth.rest_areas[a] = static_cast<float>(cloth.rest_areas[a] * (a % 3 == 0 ? 1.3 : 0.9));
+    Parameters walk = tight;
+    walk.sub_steps = 6;
+    walk.stepping = Stepping::small_steps;
+    for (const Options& options : {many_groups, one_group}) {
+        CAPTURE(variant_name(options));
+        check_against_reference(cloth, options, walk);
+    }
+}

@@ -214,6 +214,35 @@ TEST_CASE("assemble_gradients: alpha as the schedule has it in each sub-step", "
     }
 }
 
+TEST_CASE("assemble_gradients: in small steps what is left of the start's error is not asked for, nor growth beyond 4",
+          "[assemble_gradients]") {
+    const Parameters walk{.sub_steps = 5, .stepping = Stepping::small_steps};  // four parts
+    Cloth cloth = make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1);
+    for (std::size_t a = 0; a < cloth.rest_areas.size(); a += 5) cloth.rest_areas[a] *= 10.0;
+    const std::vector<Cloth> cloths{cloth};
+    const std::vector<double> errors = random_numbers(cloth.rest_areas.size(), -1e-2, 1e-2, 3);
+    for (const auto& [sub_step, left] : {std::pair{0, 0.75}, std::pair{1, 0.5}, std::pair{3, 0.0}, std::pair{4, 0.0}}) {
+        CAPTURE(sub_step);
+        Arrays arrays(cloths, Matrix::consistent, walk, 2);
+        arrays.start_errors.write(arrays.over_triangles([&](std::size_t, std::size_t a) { return errors[a]; }));
+        launch::assemble_gradients(arrays, {}, sub_step);
+        const ScaledSolve& solve = arrays.solves[0];
+        std::vector<double> expected, size;
+        std::size_t bounded = 0;
+        for (std::size_t a = 0; a < errors.size(); ++a) {
+            const double area = solve.geometry[a].area;
+            const double asked = area - cloth.rest_areas[a] - left * errors[a];
+            bounded += asked < -3.0 * area;
+            expected.push_back(solve.scale[a] * std::max(asked, -3.0 * area));
+            size.push_back(solve.scale[a] * std::max(area, cloth.rest_areas[a]));
+        }
+        CHECK(bounded > errors.size() / 10);
+        CHECK(bounded < errors.size() / 2);
+        CHECK(difference(arrays.of_cloth(arrays.residual.read(), 0), expected) <=
+              elementwise_tolerance(20) * norm(size));
+    }
+}
+
 TEST_CASE("measure_area_change: awkward sizes in every work-group size", "[measure_area_change]") {
     for (const std::uint32_t group : work_group_sizes())
         for (const std::uint32_t size : awkward_sizes(group)) {

@@ -58,7 +58,7 @@ FAULTS = (
     Fault("small steps: the error of the start is not led back, but undone in the first part of the step",
           "kernels/small_steps.h",
           "return sub_step < walked ? (float)(walked - 1 - sub_step) / (float)walked : 0.0f;", "return 0.0f;",
-          catch("filter against the reference", *FILTER_TESTS, "the filter agrees with the reference: small steps*"),
+          catch("filter against the reference", *FILTER_TESTS, "the filter agrees with the reference: small steps from*"),
           r"FAILED"),
     Fault("small steps: a triangle may be asked for any growth",
           "kernels/triangle_assembly.h", "excess = select(excess, least, excess < least);", "(void)least;",
