@@ -79,7 +79,7 @@ std::vector<cl_float4> predicted_of(std::span<const Cloth> cloths, const std::ve
     return all;
 }
 
-// ḡ_k = s √(w_k / 2) g_k in units of 1/32767, and (α − 1)/α.
+// ḡ_k = s √(w_k / 2) g_k in units of 1/32767, (α − 1)/α, and √(α D)/A.
 std::vector<Gradients> gradients_of(std::span<const Cloth> cloths, std::span<const ScaledSolve> solves,
                                     const host::Adjacency& adjacency,
                                     const std::vector<std::vector<std::uint32_t>>& places, double alpha,
@@ -90,6 +90,8 @@ std::vector<Gradients> gradients_of(std::span<const Cloth> cloths, std::span<con
             const double own_alpha = per_triangle ? cloths[c].regularization[a] : alpha;
             Gradients& out = all[places[c][a]];
             out.shift = static_cast<float>((own_alpha - 1.0) / own_alpha);
+            const double scaled_area = solves[c].scale[a] * solves[c].geometry[a].area;
+            out.stiffening = scaled_area > 0.0 ? static_cast<float>(1.0 / scaled_area) : 0.0f;
             for (int corner = 0; corner < 3; ++corner)
                 for (int k = 0; k < 3; ++k)
                     out.corner[corner].s[k] =

@@ -23,12 +23,13 @@ void check_area_sums(const Arrays& arrays) {
     for (std::size_t c = 0; c < arrays.cloth_count(); ++c) {
         const Cloth& cloth = arrays.sources[c];
         const std::size_t count = cloth.rest_areas.size();
-        double greatest = 0.0, squares = 0.0, weights = 0.0, area_ratio = 0.0;
+        double greatest = 0.0, squares = 0.0, capped = 0.0, weights = 0.0, area_ratio = 0.0;
         for (std::size_t a = 0; a < count; ++a) {
             const double area = arrays.solves[c].geometry[a].area;
             const double change = std::abs(area - cloth.rest_areas[a]) / cloth.rest_areas[a];
             greatest = std::max(greatest, change);
             squares += cloth.rest_areas[a] * change * change;
+            capped += cloth.rest_areas[a] * std::min(change, 1.0) * std::min(change, 1.0);
             weights += cloth.rest_areas[a];
             area_ratio = std::max(area_ratio, area / cloth.rest_areas[a]);
         }
@@ -39,6 +40,9 @@ void check_area_sums(const Arrays& arrays) {
         const double rms = std::sqrt(squares / weights);
         const double got = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_SQUARED_CHANGE)) / weights);
         CHECK(std::abs(got - rms) <= absolute + sum_tolerance(4, count) * rms);
+        const double capped_rms = std::sqrt(capped / weights);
+        const double capped_got = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_CAPPED_CHANGE)) / weights);
+        CHECK(std::abs(capped_got - capped_rms) <= absolute + sum_tolerance(4, count) * capped_rms);
         CHECK(std::abs(sum(arrays.partials_of(c, APSL_PARTIAL_MEASURED)) - weights) <=
               sum_tolerance(1, count) * weights);
         CHECK(sum(arrays.partials_of(c, APSL_PARTIAL_NOT_FINITE)) == 0.0);
@@ -69,6 +73,9 @@ void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
                 CHECK(stored.corner[corner].s[3] == 0);
             }
             CHECK(std::abs(static_cast<double>(stored.shift) - (alpha - 1.0) / alpha) <= elementwise_tolerance(2));
+            const double stiffening = solve.scale[a] > 0.0 ? 1.0 / (solve.scale[a] * solve.geometry[a].area) : 0.0;
+            CHECK(std::abs(static_cast<double>(stored.stiffening) - stiffening) <=
+                  elementwise_tolerance(40) * stiffening);
             residual_scale.push_back(solve.scale[a] * solve.geometry[a].area);
             areas.push_back(solve.geometry[a].area);
         }
@@ -253,6 +260,18 @@ TEST_CASE("measure_area_change: awkward sizes in every work-group size", "[measu
             launch::measure_area_change(arrays, {.work_group_size = group});
             check_area_sums(arrays);
         }
+}
+
+TEST_CASE("measure_area_change: what decides counts a triangle by at most 100 %", "[measure_area_change]") {
+    Cloth cloth = make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1);
+    for (std::size_t a = 0; a < cloth.rest_areas.size(); a += 4)
+        cloth.rest_areas[a] = static_cast<float>(0.05 * cloth.rest_areas[a]);
+    const std::vector<Cloth> cloths{cloth};
+    Arrays arrays(cloths, Matrix::printed, paper_setting, 2);
+    launch::measure_area_change(arrays, {});
+    check_area_sums(arrays);
+    CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_CAPPED_CHANGE)) <
+          0.1 * sum(arrays.partials_of(0, APSL_PARTIAL_SQUARED_CHANGE)));
 }
 
 TEST_CASE("measure_area_change: counts the triangles that are not finite", "[measure_area_change]") {

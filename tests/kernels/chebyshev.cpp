@@ -135,6 +135,30 @@ TEST_CASE("bound_vertices: the reference's bounds, a fifth more where a mass is 
         }
 }
 
+TEST_CASE("bound_vertices: a gradient of zero counts as one of any direction", "[bound_matrix]") {
+    const std::vector<Cloth> cloths{make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1)};
+    Arrays arrays(cloths, Matrix::consistent, {.sub_steps = 30}, 2);
+    arrays.motion.write(arrays.predicted.read());
+    std::vector<Gradients> gradients = arrays.gradients.read();
+    std::vector<reference::TriangleGeometry<double>> geometry = arrays.solves[0].geometry;
+    for (std::size_t a = 0; a < geometry.size(); a += 7) {
+        for (cl_short4& corner : gradients[arrays.triangle_places[0][a]].corner) corner = {{0, 0, 0, 0}};
+        for (auto& gradient : geometry[a].gradients) gradient.setZero();
+    }
+    arrays.gradients.write(gradients);
+    launch::bound_vertices(arrays, {.chebyshev = true});
+    std::vector<double> want, without;
+    reference::vertex_bounds<double>(*cloths[0].topology, geometry, want);
+    reference::vertex_bounds<double>(*cloths[0].topology, arrays.solves[0].geometry, without);
+    CHECK(want != without);
+    const std::vector<float> got = arrays.vertex_bounds.read();
+    for (std::size_t v = 0; v < want.size(); ++v) {
+        CAPTURE(v);
+        if (cloths[0].inverse_masses[v] == 0.0) continue;  // no gradient is stored there
+        CHECK(static_cast<double>(got[arrays.vertex_places[v]]) == Approx(want[v]).epsilon(2e-2));
+    }
+}
+
 TEST_CASE("assemble_gradients for a Chebyshev solve: scaled by the bound, no shift", "[assemble_gradients]") {
     for (const std::uint32_t group : work_group_sizes()) {
         CAPTURE(group);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "kernels/launch.hpp"
 #include "reference/displacements.hpp"
+#include "reference/effective_masses.hpp"
 #include "support/tolerances.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -148,6 +150,66 @@ TEST_CASE("gather_displacements: counts iterations and adapts alpha's factor", "
     arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
     CHECK(factor_after(4.0f, 11, 0.05) == 4.0f);
     CHECK(arrays.stats.read()[0].cg_iterations == 47);
+}
+
+TEST_CASE(
+    "gather_displacements: in small steps vertices too light for their tension move less, and weigh more from then on",
+    "[gather_displacements]") {
+    constexpr Parameters walk{.sub_steps = 30};
+    const std::vector<Cloth> cloths{make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1)};
+    const Cloth& cloth = cloths[0];
+    Arrays arrays(cloths, Matrix::consistent, walk, 2);
+    const ScaledSolve& solve = arrays.solves[0];
+    std::vector<double> lambda(solve.scale.size());
+    for (std::size_t a = 0; a < lambda.size(); ++a) lambda[a] = 0.3 + std::cos(2.3 * static_cast<double>(a));
+    reference::EffectiveMasses<double> masses;
+    masses.start(cloth.inverse_masses);
+    masses.find_tension(*cloth.topology, solve.geometry, lambda);
+    // So strong that about half of the vertices are too light.
+    std::vector<double> demands;
+    for (std::size_t v = 0; v < masses.tension.size(); ++v)
+        if (cloth.inverse_masses[v] > 0.0) demands.push_back(2.0 * masses.tension[v] * cloth.inverse_masses[v]);
+    std::nth_element(demands.begin(), demands.begin() + static_cast<std::ptrdiff_t>(demands.size() / 2), demands.end());
+    for (double& pressure : lambda) pressure /= demands[demands.size() / 2];
+    masses.find_tension(*cloth.topology, solve.geometry, lambda);
+    std::vector<double> moves;
+    reference::displacements<double>(*cloth.topology, solve.geometry, cloth.inverse_masses, lambda, moves);
+
+    arrays.edit_states([&](apsl_solve_state& state) {
+        state.solve_iterations = 3;
+        state.greatest_mass = static_cast<float>(masses.greatest);
+    });
+    arrays.pressure.write(arrays.over_triangles(
+        [&](std::size_t, std::size_t a) { return solve.scale[a] > 0.0 ? lambda[a] / solve.scale[a] : 0.0; }));
+    const std::vector<cl_float4> before = arrays.predicted.read();
+    std::vector<cl_float4> still = before;
+    for (cl_float4& step : still) step.s[0] = step.s[1] = step.s[2] = 0.0f;
+    arrays.motion.write(still);
+    arrays.correction.write(std::vector<cl_float4>(before.size(), cl_float4{{0.0f, 0.0f, 0.0f, 0.0f}}));
+    constexpr int last_part = 28;  // of 29: nothing is carried on
+    launch::gather_displacements(arrays, {}, 0, last_part);
+    const std::vector<cl_float4> after = arrays.predicted.read();
+
+    std::size_t raised = 0;
+    std::vector<double> got, want;
+    std::vector<double> shares;
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v)
+        shares.push_back(masses.share_taken(v, cloth.inverse_masses[v]));
+    masses.raise(cloth.inverse_masses);
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
+        CAPTURE(v);
+        const std::size_t i = arrays.vertex_places[v];
+        CHECK(static_cast<double>(after[i].s[3]) == Approx(masses.inverse[v]).epsilon(1e-2));
+        raised += after[i].s[3] < before[i].s[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            got.push_back(static_cast<double>(after[i].s[k]) - static_cast<double>(before[i].s[k]));
+            want.push_back(shares[v] * moves[3 * v + k]);
+        }
+    }
+    CHECK(raised > cloth.inverse_masses.size() / 4);
+    CHECK(raised < cloth.inverse_masses.size() * 3 / 4);
+    CHECK(*std::min_element(shares.begin(), shares.end()) < 0.9);
+    CHECK(difference(got, want) <= 1e-2 * norm(want));
 }
 
 TEST_CASE("gather_displacements: on a walk a displacement changes the velocity and carries on",
