@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "device_parameters.hpp"
 
-#include "raised_masses.hpp"
-#include "stepping.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 namespace apsl::host {
 
-apsl_parameters device_parameters(const Parameters& p) {
-    const bool scheduled = p.first_regularization > 0.0f && p.sub_steps > 1;
-    const float damping_step = scheduled ? std::log2((p.first_regularization - 1.0f) / (p.regularization - 1.0f)) /
-                                               static_cast<float>(p.sub_steps - 1)
-                                         : 0.0f;
+apsl_parameters device_parameters(const ResolvedParameters& p) {
+    const bool scheduled = p.first_alpha != p.regularization;
+    const float damping_step =
+        scheduled ? std::log2((p.first_alpha - 1.0f) / (p.regularization - 1.0f)) / static_cast<float>(p.sub_steps - 1)
+                  : 0.0f;
     // 32-bit residuals get no smaller than a few roundings of the right-hand side: beyond, iterations only add noise.
-    const float tolerance = std::max(solve_tolerance(p), 1e-6f);
+    const float tolerance = std::max(p.solve_tolerance, 1e-6f);
     const bool on = p.enabled;
     return {.time_step = p.time_step,
             .regularization = p.regularization,
@@ -25,9 +22,9 @@ apsl_parameters device_parameters(const Parameters& p) {
             .sub_steps = on ? p.sub_steps : 0,
             .max_iterations = p.max_iterations,
             .adaptive_iterations = p.adaptive_iterations,
-            .walked = on ? walked_sub_steps(p) : 0,
+            .walked = p.walked,
             .enabled = on,
-            .raises_masses = on && raises_masses(p),
+            .raises_masses = p.raises_masses,
             .padding = {}};
 }
 

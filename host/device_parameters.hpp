@@ -3,11 +3,11 @@
 
 #include "kernels/layout.h"
 
-#include <apsl/parameters.hpp>
+#include "resolved_parameters.hpp"
 
 namespace apsl::host {
 
-/// What the kernels read of valid parameters, with what depends on them alone computed once a call.
-apsl_parameters device_parameters(const Parameters& p);
+/// What the kernels read of them.
+apsl_parameters device_parameters(const ResolvedParameters& p);
 
 }  // namespace apsl::host

@@ -11,6 +11,10 @@ Kernel create_kernel(cl_program program, const char* name) {
     cl_int status = CL_SUCCESS;
     Kernel kernel{name, KernelHandle(clCreateKernel(program, name, &status)), {}};
     check(status, ("creating kernel " + kernel.name).c_str());
+    cl_uint count = 0;
+    check(clGetKernelInfo(kernel.handle.get(), CL_KERNEL_NUM_ARGS, sizeof count, &count, nullptr),
+          ("asking for the arguments of kernel " + kernel.name).c_str());
+    kernel.arguments.resize(count);
     return kernel;
 }
 

@@ -63,7 +63,6 @@ private:
     void set_number(const Number& number) {
         std::uint64_t bytes = 0;
         std::memcpy(&bytes, &number, sizeof number);
-        if (kernel_.arguments.size() <= next_) kernel_.arguments.resize(next_ + 1);
         Kernel::Argument& last = kernel_.arguments[next_];
         if (last.known && last.value == bytes) {
             ++next_;

@@ -69,6 +69,7 @@ StrainLimiter::Implementation::Implementation(cl_context the_context, cl_device_
     create_arrays(adjacency);
     memory.finish_uploads();
     kernels = create_kernels(program.get(), options);
+    resolved.reserve(cloth_count);
 }
 
 std::size_t StrainLimiter::Implementation::required_scratch_bytes(
@@ -118,24 +119,18 @@ void StrainLimiter::Implementation::create_arrays(const Adjacency& adjacency) {
     arrays = make_device_arrays(memory, adjacency, options, group_count(facts, options, largest));
 }
 
-Parameters StrainLimiter::Implementation::as_run(Parameters given) const {
-    if (options.positions_only) given.stepping = Stepping::whole_step;
-    return given;
-}
-
 void StrainLimiter::Implementation::queue_parameters(CommandSequence& commands,
-                                                     std::span<const Parameters> given) const {
+                                                     std::span<const ResolvedParameters> given) const {
     // A fill takes its pattern at once and a launch its arguments, so nothing of the caller's has to outlive this call.
     if (given.size() == 1) {
-        const apsl_parameters pattern = device_parameters(as_run(given[0]));
+        const apsl_parameters pattern = device_parameters(given[0]);
         commands.fill(arrays.parameters, &pattern, sizeof pattern, 0, cloth_count * sizeof pattern);
         return;
     }
     for (cl_uint first = 0; first < cloth_count; first += APSL_PARAMETER_BLOCK) {
         const cl_uint count = std::min<cl_uint>(cloth_count - first, APSL_PARAMETER_BLOCK);
         apsl_parameter_block block{};
-        std::transform(given.begin() + first, given.begin() + first + count, block.entry,
-                       [&](const Parameters& p) { return device_parameters(as_run(p)); });
+        std::transform(given.begin() + first, given.begin() + first + count, block.entry, device_parameters);
         commands.launch(arguments::set_parameters(kernels.set_parameters, arrays, block, first, count), 1,
                         options.work_group_size, 1);
     }
@@ -232,18 +227,20 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
         invalid(std::to_string(given.size()) + " parameters given for " + std::to_string(cloth_count) +
                 " cloths, expected one for each or a single one");
     CallBudget budget;
+    resolved.clear();
     for (const Parameters& p : given) {
         if (p.enabled)
             validate(options, p);
         else
             validate(p);
-        if (p.enabled) budget.add(as_run(p));
+        resolved.emplace_back(p, options);
+        if (p.enabled) budget.add(resolved.back());
     }
     check_queue(queue, wait_list, context, device);
     check_buffers(buffers, options, caller_counts, context);
 
     CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
-    queue_parameters(commands, given);
+    queue_parameters(commands, resolved);
     if (one_group())
         launch_one_group(commands, arguments::filter_in_one_group(kernels.filter_in_one_group, arrays,
                                                                   arrays.pressures[0], buffers, triangle_count));

@@ -11,6 +11,7 @@
 #include "limiter_plan.hpp"
 #include "program_binary.hpp"
 #include "queued_iterations.hpp"
+#include "resolved_parameters.hpp"
 
 #include <apsl/strain_limiter.hpp>
 
@@ -47,6 +48,7 @@ struct StrainLimiter::Implementation {
     std::size_t largest_cloth = 0;  ///< triangles
     host::DeviceMemory memory;
     host::DeviceArrays arrays;
+    std::vector<ResolvedParameters> resolved;  ///< of the call at hand; room for one a cloth
     host::LaunchProfile profile;
     bool profiling = false;
 
@@ -68,9 +70,7 @@ private:
     void create_program(std::uint32_t max_patch_vertices, std::span<const std::byte> binary);
     void share_program(const Implementation& built);
     void create_arrays(const host::Adjacency& adjacency);
-    /// With `automatic` replaced where the options leave no choice.
-    Parameters as_run(Parameters given) const;
-    void queue_parameters(host::CommandSequence& commands, std::span<const Parameters> given) const;
+    void queue_parameters(host::CommandSequence& commands, std::span<const ResolvedParameters> given) const;
     /// The matrix applied to an array, with its dot product.
     void queue_product(host::CommandSequence& commands, const host::BufferHandle& multiplied, cl_int iteration) const;
     void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;

@@ -3,7 +3,6 @@
 
 #include "chebyshev_products.hpp"
 #include "scheduled_regularization.hpp"
-#include "stepping.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,30 +25,27 @@ double iteration_bound(double alpha, double tolerance) {
 
 // The least α of any cloth in this sub-step.
 double least_regularization(const CallBudget& budget, int sub_step) {
-    const Parameters hardest{.regularization = budget.regularization,
-                             .sub_steps = budget.sub_steps,
-                             .first_regularization = budget.first_regularization};
+    ResolvedParameters hardest(Parameters{.regularization = budget.regularization, .sub_steps = budget.sub_steps});
+    hardest.first_alpha = budget.first_alpha;
     return scheduled_regularization(double{budget.regularization}, hardest, sub_step);
 }
 
 }  // namespace
 
-void CallBudget::add(const Parameters& p) {
-    const bool scheduled = p.first_regularization > 0.0f && p.sub_steps > 1;
-    const float first = scheduled ? p.first_regularization : p.regularization;
+void CallBudget::add(const ResolvedParameters& p) {
     const bool is_first = max_iterations == 0;
-    one_schedule = is_first || (one_schedule && sub_steps == p.sub_steps && first_regularization == first &&
+    one_schedule = is_first || (one_schedule && sub_steps == p.sub_steps && first_alpha == p.first_alpha &&
                                 regularization == p.regularization);
     sub_steps = std::max(sub_steps, p.sub_steps);
     max_iterations = std::max(max_iterations, p.max_iterations);
-    walks = walks || walked_sub_steps(p) > 0;
-    first_regularization = std::min(first_regularization, first);
+    walks = walks || p.walked > 0;
+    first_alpha = std::min(first_alpha, p.first_alpha);
     regularization = std::min(regularization, p.regularization);
-    tolerance = std::min(tolerance, solve_tolerance(p));
+    tolerance = std::min(tolerance, p.solve_tolerance);
 }
 
 int queued_iterations(std::size_t largest, const CallBudget& budget, int sub_step) {
-    const bool bounded = std::min(budget.first_regularization, budget.regularization) > 1.0f && budget.tolerance > 0.0f;
+    const bool bounded = std::min(budget.first_alpha, budget.regularization) > 1.0f && budget.tolerance > 0.0f;
     if (!bounded) return budget.max_iterations;
     const double alpha = least_regularization(budget, sub_step);
     // Solves take a third to a half of the bound. On a large cloth one work-group alone would be slow: all of it.
@@ -60,7 +56,7 @@ int queued_iterations(std::size_t largest, const CallBudget& budget, int sub_ste
 }
 
 int queued_products(const CallBudget& budget, int sub_step) {
-    const double least = std::min(budget.first_regularization, budget.regularization);
+    const double least = std::min(budget.first_alpha, budget.regularization);
     const bool damped = least > 1.0;
     const double alpha = budget.one_schedule && damped ? least_regularization(budget, sub_step) : least;
     return chebyshev_products(alpha, budget.max_iterations);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <apsl/parameters.hpp>
+#include "resolved_parameters.hpp"
 
 #include <cstddef>
 #include <limits>
@@ -15,11 +15,11 @@ struct CallBudget {
     bool walks = false;        ///< a cloth takes small steps
     bool one_schedule = true;  ///< α is the same for all cloths, sub-step by sub-step
     // The least of any: what makes for the longest solves.
-    float first_regularization = std::numeric_limits<float>::infinity();
+    float first_alpha = std::numeric_limits<float>::infinity();
     float regularization = std::numeric_limits<float>::infinity();
-    float tolerance = std::numeric_limits<float>::infinity();  ///< as solve_tolerance() has it
+    float tolerance = std::numeric_limits<float>::infinity();  ///< of the solves
 
-    void add(const Parameters& parameters);
+    void add(const ResolvedParameters& parameters);
 };
 
 /// CG iterations of a solve in sub-step `sub_step` that are queued as launches over the whole device, where the largest

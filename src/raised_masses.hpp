@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "stepping.hpp"
-
-#include <apsl/parameters.hpp>
-
 namespace apsl {
 
 /// The least effective mass of a vertex, in stiffnesses of the tension around it. Explicit steps swing from ½ down,
@@ -15,11 +11,5 @@ inline constexpr float stiffness_kept = 0.9f;
 /// The greatest effective mass, in geometric mean masses of the cloth. A heavier vertex needs more pressure, which
 /// stiffens it.
 inline constexpr float greatest_mean_masses = 10.0f;
-
-/// Whether sub-steps may raise masses. Stiffness grows with the square of a part of Δt: in fewer and longer parts
-/// ordinary vertices would be taken for light ones.
-inline bool raises_masses(const Parameters& parameters) {
-    return walked_sub_steps(parameters) + 1 >= least_automatic_small_steps;
-}
 
 }  // namespace apsl

@@ -14,7 +14,7 @@
 #include "reference/matrix.hpp"
 
 #include "chebyshev_products.hpp"
-#include "raised_masses.hpp"
+#include "resolved_parameters.hpp"
 #include "scheduled_regularization.hpp"
 #include "stepping.hpp"
 
@@ -141,7 +141,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     }
 
     /// A Chebyshev polynomial in place of a solve, of the degree that belongs to α; λ is left in `lambda`.
-    SolveResult<Real> solve_by_chebyshev(const Parameters& parameters) {
+    SolveResult<Real> solve_by_chebyshev(const ResolvedParameters& parameters) {
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         consistent_matrix(*topology, shared, triangles, std::span<const Real>(masses.inverse), G);
         if (stats.sub_steps == 0) vertex_bounds(*topology, triangles, direction_bounds);
@@ -157,8 +157,8 @@ struct BasicStrainLimiter<Real>::Implementation {
     }
 
     /// One solve of (G + (α − 1) diag G) λ = b at the present geometry; λ is left in `lambda`.
-    SolveResult<Real> solve(const Buffers<Real>& buffers, const Parameters& parameters) {
-        find_excess(buffers, walked_sub_steps(parameters));
+    SolveResult<Real> solve(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
+        find_excess(buffers, parameters.walked);
         if (options.solver == Solver::chebyshev) return solve_by_chebyshev(parameters);
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         const std::span<const Real> inverse_masses = masses.inverse;
@@ -175,7 +175,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         }
         regularize(std::span<const Real>(effective_regularization), G);
 
-        const auto tolerance = static_cast<Real>(solve_tolerance(parameters));
+        const auto tolerance = static_cast<Real>(parameters.solve_tolerance);
         if (kept.empty())
             return conjugate_gradient(G, area_excess, tolerance, parameters.max_iterations, scratch, lambda);
 
@@ -189,10 +189,10 @@ struct BasicStrainLimiter<Real>::Implementation {
     }
 
     /// What sub-step stats.sub_steps leaves to the next: masses, and the bounds that the matrix is scaled by.
-    void prepare_next(const Buffers<Real>& buffers, const Parameters& parameters) {
+    void prepare_next(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
         const int next = stats.sub_steps + 1;
         if (next == parameters.sub_steps) return;
-        if (raises_masses(parameters)) masses.raise(buffers.inverse_masses);
+        if (parameters.raises_masses) masses.raise(buffers.inverse_masses);
         if (options.solver != Solver::chebyshev || next % bound_period != 0) return;
         vertex_bounds(*topology, std::span<const TriangleGeometry<Real>>(geometry), direction_bounds);
         for (std::size_t i = 0; i < direction_bounds.size(); ++i)
@@ -201,11 +201,11 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     /// Corrects x_j. On a walk of `parts` parts a displacement of sub-step k changes the velocity too, by parts · Δx /
     /// Δt, and carries on through the parts left.
-    void displace(std::span<const Real> inverse_masses, const Parameters& parameters) {
-        const int sub_step = stats.sub_steps, parts = walked_sub_steps(parameters);
+    void displace(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
+        const int sub_step = stats.sub_steps, parts = parameters.walked;
         const std::span<const Real> pressures{lambda.data(), geometry.size()};
         displacements<Real>(*topology, geometry, masses.inverse, pressures, correction);
-        if (raises_masses(parameters)) {
+        if (parameters.raises_masses) {
             masses.find_tension(*topology, geometry, pressures);
             for (std::size_t n = 0; n < correction.size(); ++n)
                 correction[n] *= masses.share_taken(n / 3, inverse_masses[n / 3]);
@@ -290,9 +290,9 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     /// Leaves the outcome in `stats`; what is not finite ends it as diverged, with the area change of the velocities as
     /// given.
-    void filter(const Buffers<Real>& buffers, const Parameters& parameters) {
+    void filter(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
         const Real time_step = parameters.time_step;
-        const int parts = walked_sub_steps(parameters);
+        const int parts = parameters.walked;
         stats = {};
         stats.status = Status::diverged;
         stats.greatest_mass_ratio = 1.0f;

@@ -123,16 +123,16 @@ TEST_CASE("Chebyshev: what is not finite ends a call, and the next one is a fres
 TEST_CASE("queued products: those of the cloth with most of them", "[filter]") {
     using host::CallBudget, host::queued_products;
     CallBudget one;
-    one.add({.regularization = 1.4f, .sub_steps = 3, .first_regularization = 1.1f});
+    one.add(Parameters{.regularization = 1.4f, .sub_steps = 3, .first_regularization = 1.1f});
     CHECK(queued_products(one, 0) == 4);
     CHECK(queued_products(one, 2) == 2);
     CallBudget same = one;
-    same.add({.regularization = 1.4f, .sub_steps = 3, .first_regularization = 1.1f});
+    same.add(Parameters{.regularization = 1.4f, .sub_steps = 3, .first_regularization = 1.1f});
     CHECK(queued_products(same, 2) == 2);
     CallBudget others = one;
-    others.add({.regularization = 1.4f, .sub_steps = 5});
+    others.add(Parameters{.regularization = 1.4f, .sub_steps = 5});
     for (int sub_step = 0; sub_step < 5; ++sub_step) CHECK(queued_products(others, sub_step) == 4);
     CallBudget undamped;
-    undamped.add({.regularization = 1.0f, .sub_steps = 2, .max_iterations = 9});
+    undamped.add(Parameters{.regularization = 1.0f, .sub_steps = 2, .max_iterations = 9});
     CHECK(queued_products(undamped, 0) == 9);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "filter/filtered.hpp"
 
-#include "stepping.hpp"
+#include "resolved_parameters.hpp"
 #include "support/tolerances.hpp"
 
 #include <apsl/reference.hpp>
@@ -76,7 +76,7 @@ void check_against_reference(const Filtered& got, const MovingCloth& cloth, cons
                              const Parameters& parameters) {
     const Filtered want = filter_with_reference(cloth, options, parameters);
     const auto time_step = static_cast<double>(parameters.time_step);
-    const auto tolerance = static_cast<double>(solve_tolerance(parameters));
+    const auto tolerance = static_cast<double>(ResolvedParameters(parameters).solve_tolerance);
 
     std::vector<double> correction(want.velocities.size());
     for (std::size_t n = 0; n < correction.size(); ++n) correction[n] = want.velocities[n] - cloth.velocities[n];
@@ -91,7 +91,7 @@ void check_against_reference(const Filtered& got, const MovingCloth& cloth, cons
     CHECK(got.stats.status == want.stats.status);
     CHECK(got.stats.sub_steps == want.stats.sub_steps);
     CHECK(std::abs(got.stats.cg_iterations - want.stats.cg_iterations) <= want.stats.sub_steps);
-    CHECK((got.stats.status != Status::ok || got.stats.residual <= solve_tolerance(parameters)));
+    CHECK((got.stats.status != Status::ok || got.stats.residual <= ResolvedParameters(parameters).solve_tolerance));
 
     // What the device says of the areas, against the areas its velocities lead to. Positions round at their own size:
     // relative to a triangle's height that is the relative error of its area.

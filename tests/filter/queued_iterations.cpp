@@ -49,8 +49,8 @@ TEST_CASE("queued iterations: all of them where nothing bounds a solve", "[filte
 
 TEST_CASE("queued iterations: the hardest of several cloths decides", "[filter]") {
     CallBudget budget;
-    budget.add({.regularization = 1.2f, .sub_steps = 4, .tolerance = 0.1f, .max_iterations = 60});
-    budget.add({.regularization = 1.01f, .sub_steps = 2, .tolerance = 0.5f, .max_iterations = 100});
+    budget.add(Parameters{.regularization = 1.2f, .sub_steps = 4, .tolerance = 0.1f, .max_iterations = 60});
+    budget.add(Parameters{.regularization = 1.01f, .sub_steps = 2, .tolerance = 0.5f, .max_iterations = 100});
     CHECK(budget.sub_steps == 4);
     CHECK(budget.max_iterations == 100);
     CHECK(queued_iterations(small_cloth, budget, 0) == 26);

@@ -34,7 +34,8 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
     if (!kernels.contains(kernel_key))
         kernels.emplace(kernel_key, host::create_kernel(programs[program_key].get(), name));
     const host::Kernel& kernel = kernels.at(kernel_key);
-    kernel.arguments.clear();  // these arrays may have the handles of others, released since
+    kernel.arguments.assign(kernel.arguments.size(),
+                            {});  // these arrays may have the handles of others, released since
     return kernel;
 }
 

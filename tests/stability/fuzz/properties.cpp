@@ -2,7 +2,7 @@
 #include "stability/fuzz/properties.hpp"
 
 #include "chebyshev_products.hpp"
-#include "stepping.hpp"
+#include "resolved_parameters.hpp"
 #include "support/tolerances.hpp"
 
 #include <algorithm>
@@ -103,7 +103,8 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
         !std::isfinite(stats.residual))
         return broken("statistics that are not finite without having diverged",
                       {{"max", stats.max_area_change}, {"rms", stats.rms_area_change}, {"residual", stats.residual}});
-    if (stats.status == Status::ok && stats.residual > std::max(solve_tolerance(parameters), 1e-6f) * (1.0f + 1e-5f))
+    if (stats.status == Status::ok &&
+        stats.residual > std::max(ResolvedParameters(parameters).solve_tolerance, 1e-6f) * (1.0f + 1e-5f))
         return broken("ok, but a solve missed the tolerance", {{"residual", stats.residual}});
     return {};
 }

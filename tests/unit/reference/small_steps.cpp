@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "stepping.hpp"
+#include "resolved_parameters.hpp"
 #include "unit/reference/run_filter.hpp"
 #include "unit/reference/sample_cloths.hpp"
 
@@ -40,16 +40,16 @@ Parameters walk(int sub_steps) {
 
 TEST_CASE("small steps from 20 sub-steps up, and never with fewer than two") {
     const auto walked = [](int sub_steps, Stepping stepping) {
-        return walked_sub_steps({.sub_steps = sub_steps, .stepping = stepping});
+        return ResolvedParameters(Parameters{.sub_steps = sub_steps, .stepping = stepping}).walked;
     };
     CHECK(walked(19, Stepping::automatic) == 0);
     CHECK(walked(20, Stepping::automatic) == 19);
     CHECK(walked(50, Stepping::whole_step) == 0);
     CHECK(walked(2, Stepping::small_steps) == 1);
     CHECK(walked(1, Stepping::small_steps) == 0);
-    CHECK(solve_tolerance({.tolerance = 0.1f, .stepping = Stepping::whole_step}) == 0.1f);
-    CHECK(solve_tolerance({.tolerance = 0.1f}) == Approx(0.3f));
-    CHECK(solve_tolerance({.tolerance = 0.9f}) == Approx(0.9f));
+    CHECK(ResolvedParameters(Parameters{.tolerance = 0.1f, .stepping = Stepping::whole_step}).solve_tolerance == 0.1f);
+    CHECK(ResolvedParameters(Parameters{.tolerance = 0.1f}).solve_tolerance == Approx(0.3f));
+    CHECK(ResolvedParameters(Parameters{.tolerance = 0.9f}).solve_tolerance == Approx(0.9f));
 }
 
 TEST_CASE("small steps: a walk along an altitude, by hand") {
