@@ -57,7 +57,8 @@ void check(const Struct& given, const Field<Struct, Value>& field) {
     if constexpr (std::is_enum_v<Value>) {
         if (name_of(value).empty()) refuse(static_cast<int>(value), listed<Value>());
     } else if constexpr (std::is_floating_point_v<Value>) {
-        if (!is_finite(value) || !field.bounds.hold(value)) refuse(value, described(field.bounds, "a finite number", field.unit));
+        if (!is_finite(value) || !field.bounds.hold(value))
+            refuse(value, described(field.bounds, "a finite number", field.unit));
     } else if constexpr (!std::is_same_v<Value, bool>) {
         if (!field.bounds.hold(value)) refuse(value, described(field.bounds, "a whole number", field.unit));
     }
