@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "adjacency.hpp"
 #include "device_memory.hpp"
 #include "handles.hpp"
-#include "limiter_plan.hpp"
 
 #include <apsl/strain_limiter.hpp>
 

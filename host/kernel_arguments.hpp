@@ -41,7 +41,7 @@ const Kernel& measure_step(const Kernel& kernel, const Arrays& a) {
 }
 
 template <class Arrays>
-const Kernel& begin_call(const Kernel& kernel, const Arrays& a) {
+const Kernel& judge_whole_step(const Kernel& kernel, const Arrays& a) {
     return set_arguments(kernel, a.parameters, a.states, a.stats, a.partials, a.groups);
 }
 

@@ -205,7 +205,7 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
     launch(commands, arguments::order_triangle_values(kernels.order_triangle_values, arrays, buffers));
     if (budget.walks) {
         launch(commands, arguments::measure_step(kernels.measure_step, arrays));
-        launch_one_group(commands, arguments::begin_call(kernels.begin_call, arrays));
+        launch_one_group(commands, arguments::judge_whole_step(kernels.judge_whole_step, arrays));
         launch(commands, arguments::start_walk(kernels.start_walk, arrays, buffers));
     }
     for (cl_int sub_step = 0; sub_step < budget.sub_steps; ++sub_step) {

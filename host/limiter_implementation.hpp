@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "adjacency.hpp"
 #include "caller_buffers.hpp"
 #include "device_arrays.hpp"
 #include "device_facts.hpp"
@@ -8,7 +9,6 @@
 #include "handles.hpp"
 #include "kernel_launch.hpp"
 #include "limiter_kernels.hpp"
-#include "limiter_plan.hpp"
 #include "program_binary.hpp"
 #include "queued_iterations.hpp"
 #include "resolved_parameters.hpp"

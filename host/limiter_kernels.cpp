@@ -15,7 +15,7 @@ LimiterKernels create_kernels(cl_program program, const Options& options) {
     create(kernels.predict_positions, "predict_positions");
     create(kernels.order_triangle_values, "order_triangle_values");
     create(kernels.measure_step, "measure_step");
-    create(kernels.begin_call, "begin_call");
+    create(kernels.judge_whole_step, "judge_whole_step");
     if (!options.positions_only) create(kernels.start_walk, "start_walk");
     create(kernels.assemble_gradients, "assemble_gradients");
     create(kernels.begin_solve, "begin_solve");

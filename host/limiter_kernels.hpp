@@ -11,7 +11,7 @@ namespace apsl::host {
 struct LimiterKernels {
     Kernel set_parameters, rest_areas;
     Kernel filter_in_one_group;
-    Kernel predict_positions, order_triangle_values, measure_step, begin_call, start_walk, assemble_gradients,
+    Kernel predict_positions, order_triangle_values, measure_step, judge_whole_step, start_walk, assemble_gradients,
         begin_solve, gather_displacements, measure_area_change, end_call, update_velocities;
     Kernel assemble_pressure_csr, csr_spmv_dot;
     Kernel matrix_free_apply_dot;  ///< of the consistent or of the printed matrix

@@ -9,9 +9,8 @@
 namespace apsl::host {
 namespace {
 
-// Up to so many triangles one group beats the launches it saves. Measured by bench/kernels on a CPU of two units, where
-// a cloth in one group leaves one of them idle: at 8,192 triangles still, at 32,768 no more. With more units more is
-// idle.
+// Largest cloth for which one work-group is faster than separate launches. Measured by bench/kernels on a CPU of two
+// units: faster at 8,192 triangles, slower at 32,768. More compute units favour separate launches.
 std::size_t one_group_triangles(const DeviceFacts& facts) {
     constexpr std::size_t least = 6144;
     return facts.is_cpu && facts.compute_units > 1 ? least * facts.compute_units / (facts.compute_units - 1) : least;

@@ -26,7 +26,7 @@ bool uses_pattern(const Options& options);
 /// The files of kernels/ that the options need, and no others.
 std::vector<std::string_view> kernel_files(const Options& options);
 
-/// Vertices of a patch to compile for where the largest has so many: rounded up, so that a mesh whose topology changes
+/// Vertices of a patch to compile for, from those of the largest: rounded up, so that a mesh whose topology changes
 /// a little needs no other program.
 std::uint32_t room_for_patches(std::uint32_t largest);
 

@@ -9,8 +9,8 @@
 #include "patch_product.h"
 #include "work_group.h"
 
-// `launched` products are queued; a cloth whose polynomial takes fewer begins so many launches later, so that the last
-// of all writes its pressures too. `next` holds y_{k−1} and receives y_{k+1}.
+// All cloths share `launched` launches. A cloth that needs fewer skips the first ones, so that every cloth finishes in
+// the last launch. `next` holds y_{k−1} and receives y_{k+1}.
 APSL_KERNEL void chebyshev_step(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
                                 __global apsl_solve_state* states, __global const uint2* patches,
                                 __global const uint* patch_vertices, __global const ushort* local_triangles,

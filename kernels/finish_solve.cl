@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rare rest of a solve: one work-group a cloth does the iterations that the launches before left undone. Mostly
-// there are none, and then one launch stands for all those that would each have found nothing to do. Reference:
-// apsl::reference::conjugate_gradient.
+// Finishes solves that did not converge in the queued iterations, one work-group a cloth. Usually it does nothing: it
+// replaces many launches that would have had nothing to do. Reference: apsl::reference::conjugate_gradient.
 #include "layout.h"
 #include "patch_product.h"
 #include "solve_in_one_group.h"

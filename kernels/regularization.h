@@ -12,7 +12,7 @@
 #define APSL_REGULARIZATION_PER_TRIANGLE 0
 #endif
 
-// What the schedule multiplies α − 1 by, so many sub-steps before the last: 1 in the last, geometric.
+// The factor that the schedule gives α − 1. `sub_steps_left`: until the last, where it is 1; geometric.
 APSL_INLINE float scheduled_damping(float damping_step, int sub_steps_left) {
     return exp2(damping_step * (float)sub_steps_left);
 }

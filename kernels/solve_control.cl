@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The decisions of Algorithm 1, taken on the device by one work-group a cloth: begin a call, begin a solve, end a call.
+// The decisions of Algorithm 1, taken on the device by one work-group a cloth: judge the whole step, begin a solve, end a call.
 // Reference: apsl::reference, strain_limiter.
 #include "accept_or_reject.h"
 #include "layout.h"
@@ -17,8 +17,8 @@ APSL_INLINE apsl_area_change area_change(__global float* partials, uint groups, 
 
 // Before a walk: the area change that the whole step would have, whether there is anything to do about it, and the
 // greatest effective mass.
-APSL_KERNEL void begin_call(__global const apsl_parameters* parameters, __global apsl_solve_state* states,
-                            __global apsl_stats* stats, __global float* partials, uint groups) {
+APSL_KERNEL void judge_whole_step(__global const apsl_parameters* parameters, __global apsl_solve_state* states,
+                                  __global apsl_stats* stats, __global float* partials, uint groups) {
     APSL_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const apsl_area_change change = area_change(partials, groups, scratch);

@@ -3,7 +3,7 @@
 
 namespace apsl {
 
-/// From so many sub-steps up Stepping::automatic takes small steps.
+/// The fewest sub-steps for which Stepping::automatic takes small steps.
 inline constexpr int least_automatic_small_steps = 20;
 
 /// The area that a small step asks of a triangle at most, as a multiple of its present area. A linearised step from

@@ -126,7 +126,7 @@ def run(arguments):
     parser.add_argument("folder", nargs="?", default="docs/accuracy", type=Path)
     parser.add_argument("--target", type=float, default=0.1)
     options = parser.parse_args(arguments)
-    rows = ["| | asked | reached |", "|---|---|---|"]
+    rows = ["| | target | measured |", "|---|---|---|"]
     for file, name in (("curtain_8k", "8 k"), ("curtain_32k", "32 k")):
         rows += size_rows(read_results(options.folder / f"{file}.json"), name)
     refinement = read_results(options.folder / "refinement.json")

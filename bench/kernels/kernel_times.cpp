@@ -18,8 +18,8 @@ std::string phase_of(const std::string& kernel) {
         {"Chebyshev", {"chebyshev_step"}},
         {"displacements", {"gather_displacements"}},
         {"begin and end",
-         {"set_parameters", "predict_positions", "order_triangle_values", "measure_step", "begin_call", "start_walk",
-          "begin_solve", "measure_area_change", "end_call", "update_velocities"}},
+         {"set_parameters", "predict_positions", "order_triangle_values", "measure_step", "judge_whole_step",
+          "start_walk", "begin_solve", "measure_area_change", "end_call", "update_velocities"}},
         {"all in one launch", {"filter_in_one_group"}},
     }};
     for (const auto& [phase, kernels] : phases)

@@ -120,7 +120,7 @@ ASKED = (
 
 def summary(rows):
     run = Run(rows)
-    lines = ["| | asked | reached | |", "|---|---|---|---|"]
+    lines = ["| | target | measured | |", "|---|---|---|---|"]
     for what, asked, judge in ASKED:
         try:
             reached, enough = judge(run)

@@ -73,7 +73,7 @@ typedef enum apsl_program_binary_use {
     APSL_PROGRAM_BINARY_REFUSED_BY_DRIVER = 5 /**< sound as far as apsl can tell */
 } apsl_program_binary_use;
 
-/** From where the sub-steps of a call correct. */
+/** Which positions each sub-step linearises about. */
 typedef enum apsl_stepping {
     APSL_STEPPING_AUTOMATIC = 0,  /**< small steps from 20 sub-steps up */
     APSL_STEPPING_WHOLE_STEP = 1, /**< from the end of the time step, as Algorithm 1 */
@@ -165,9 +165,9 @@ APSL_API const char* apsl_version(void);
 /** The same as one number, to compare with APSL_VERSION_NUMBER. */
 APSL_API int32_t apsl_version_number(void);
 
-/** apsl::Options as they are without a choice. */
+/** The default options. */
 APSL_API apsl_limiter_options apsl_limiter_default_options(void);
-/** apsl::Parameters as they are without a choice. */
+/** The default parameters. */
 APSL_API apsl_limiter_parameters apsl_limiter_default_parameters(void);
 
 /** triangles: 3 vertex indices each, counter-clockwise. *topology is null where this fails. */

@@ -64,10 +64,10 @@ struct Options {
     bool positions_only = false;
     /// A regularization buffer is given with every call.
     bool regularization_per_triangle = false;
-    /// The pressures of so many sub-steps of a call (4 B a triangle each; later sub-steps share the last) are kept, and
-    /// are the first guess for the solves of the next call: fewer CG iterations at small α, at the price of one product
-    /// with the matrix a solve, counted as an iteration. As many as there are sub-steps, or 0: solves start from zero.
-    /// Results then depend on the calls before, within the tolerance of the solves.
+    /// How many sub-steps of a call keep their pressures (4 B a triangle each; later sub-steps share the last). Kept
+    /// pressures are the first guess for the solves of the next call: fewer CG iterations at small α, at the price of
+    /// one product with the matrix a solve, counted as an iteration. As many as there are sub-steps, or 0: solves start
+    /// from zero. Results then depend on the calls before, within the tolerance of the solves.
     std::uint32_t kept_pressures = 0;
     /// chebyshev needs the consistent matrix, matrix-free, no kept_pressures and one α for all triangles, and with
     /// every call Parameters::adaptive_iterations 0.

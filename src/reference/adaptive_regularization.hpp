@@ -14,7 +14,7 @@ Real raised_regularization(Real alpha, Real factor) {
     return alpha + (factor - Real(1)) * std::max(alpha - Real(1), Real(0.05));
 }
 
-/// The factor after a solve of so many iterations: doubled, halved or kept. Always 1 with adaptive_iterations = 0.
+/// The factor after a solve that took `iterations`: doubled, halved or kept. Always 1 with adaptive_iterations = 0.
 template <class Real>
 Real adapted_factor(Real factor, const Parameters& parameters, int iterations, bool converged) {
     if (parameters.adaptive_iterations == 0) return Real(1);

@@ -28,7 +28,7 @@ def parse_arguments():
     parser.add_argument("--kernels", type=Path, default=PROJECT / "kernels", help="folder of the .cl files")
     parser.add_argument("--budget", type=Path, default=Path(__file__).with_name("budget.json"))
     parser.add_argument("--update-budget", action="store_true", help="rewrite the budget instead of keeping to it")
-    parser.add_argument("--table", action="store_true", help="print the table of docs/tuning.md")
+    parser.add_argument("--table", action="store_true", help="print the table of docs/amd_registers.md")
     parser.add_argument("--write-table", type=Path, metavar="FILE", help="put the table into a document")
     parser.add_argument("--check-table", type=Path, metavar="FILE", help="refuse a document whose table is out of date")
     parser.add_argument("--clang", default="clang-19")
@@ -113,7 +113,7 @@ def main():
     table = tuning_table.table(compiler, results, TARGETS) if not refused else ""
     if table and arguments.check_table and not tuning_table.is_current(arguments.check_table, table):
         refused.append(f"{arguments.check_table.name}: table: out of date, write it anew with "
-                       "check_kernels.py --update-budget --write-table docs/tuning.md")
+                       "check_kernels.py --update-budget --write-table docs/amd_registers.md")
     for line in refused:
         print(f"refused: {line}", file=sys.stderr)
     if refused:

@@ -150,7 +150,7 @@ class KernelFolder(unittest.TestCase):
 
     def test_a_table_out_of_date(self):
         self.add("accepted.cl")
-        document = self.kernels / "tuning.md"
+        document = self.kernels / "amd_registers.md"
         document.write_text(f"before\n{tuning_table.BEGIN}\n{tuning_table.END}\nafter\n", encoding="utf-8")
         self.assertEqual(self.check("--update-budget", "--write-table", str(document)).returncode, 0)
         self.assertEqual(self.check("--check-table", str(document)).returncode, 0)
@@ -158,7 +158,7 @@ class KernelFolder(unittest.TestCase):
         self.assertTrue(text.startswith("before\n") and text.endswith("\nafter\n"), text)
         self.assertIn("| accepted | 0 |", text)
         document.write_text(text.replace("| accepted | 0 |", "| accepted | 4 |"), encoding="utf-8")
-        self.assert_refused("tuning.md: table: out of date", "--check-table", str(document))
+        self.assert_refused("amd_registers.md: table: out of date", "--check-table", str(document))
 
 
 class Variants(unittest.TestCase):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The table of docs/tuning.md: what each kernel uses on each GPU."""
+"""The table of docs/amd_registers.md: what each kernel uses on each GPU."""
 import re
 
 BEGIN = "<!-- begin: tests/amd/check_kernels.py --write-table -->"

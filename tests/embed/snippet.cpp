@@ -19,7 +19,7 @@ apsl::Stats limit_strain(apsl::StrainLimiter& limiter, cl_command_queue queue, c
                                 .velocities = {velocities},          // m/s, in and out
                                 .inverse_masses = {inverse_masses},  // 1/kg, 0 pins a vertex
                                 .rest_areas = {rest_areas}};         // m²
-    const apsl::Parameters parameters{.time_step = 1.0f / 60.0f, .regularization = 1.2f, .sub_steps = 10};
+    const apsl::Parameters parameters{.time_step = 1.0f / 60.0f};
     const cl_event limited = limiter.enqueue(queue, buffers, parameters);  // returns at once
 
     apsl::Stats stats{};  // leave this out where nobody looks: it is the only thing that waits

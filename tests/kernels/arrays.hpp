@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "host/limiter_plan.hpp"
+#include "host/adjacency.hpp"
 #include "kernels/cloths.hpp"
 #include "support/opencl.hpp"
 

@@ -117,9 +117,9 @@ void measure_step(Arrays& a, const Build& build) {
     run(arguments::measure_step(k, a), a.groups, build, a.cloth_count());
 }
 
-void begin_call(Arrays& a, const Build& build) {
-    const host::Kernel& k = kernel(a, build, "solve_control.cl", "begin_call");
-    run(arguments::begin_call(k, a), 1, build, a.cloth_count());
+void judge_whole_step(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "solve_control.cl", "judge_whole_step");
+    run(arguments::judge_whole_step(k, a), 1, build, a.cloth_count());
 }
 
 void start_walk(Arrays& a, const Build& build) {

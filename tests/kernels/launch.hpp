@@ -34,7 +34,7 @@ void order_triangle_values(Arrays& arrays, const Build& build);
 void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
 void measure_area_change(Arrays& arrays, const Build& build);
 void measure_step(Arrays& arrays, const Build& build);
-void begin_call(Arrays& arrays, const Build& build);
+void judge_whole_step(Arrays& arrays, const Build& build);
 void start_walk(Arrays& arrays, const Build& build);
 void begin_solve(Arrays& arrays, const Build& build, int sub_step);
 void end_call(Arrays& arrays, const Build& build);

@@ -109,12 +109,12 @@ TEST_CASE("end_call: a call that went wrong is diverged, no measured triangle me
     CHECK(empty.stats().rms_area_change == 0.0f);
 }
 
-TEST_CASE("begin_call: what a whole step would do, and a stop at the target", "[begin_call]") {
+TEST_CASE("judge_whole_step: what a whole step would do, and a stop at the target", "[judge_whole_step]") {
     const auto begun = [](float target, float walked) {
         Reported reported({.sub_steps = static_cast<int>(walked) + 1,
                            .target_area_change = target,
                            .stepping = walked > 0.0f ? Stepping::small_steps : Stepping::whole_step});
-        launch::begin_call(reported.arrays, {});
+        launch::judge_whole_step(reported.arrays, {});
         return std::pair(reported.stats(), reported.state());
     };
     const auto [stats, state] = begun(0.25f, 3.0f);
@@ -133,7 +133,7 @@ TEST_CASE("begin_solve: on a walk only its end is held against the target", "[be
         Reported reported({.sub_steps = 4, .target_area_change = 0.3f, .stepping = Stepping::small_steps});
         launch::begin_solve(reported.arrays, {}, sub_step);
         CHECK(reported.state().stopped == (sub_step == 3 ? 1 : 0));
-        CHECK(reported.stats().initial_max_area_change == 0.0f);  // begin_call's
+        CHECK(reported.stats().initial_max_area_change == 0.0f);  // judge_whole_step's
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "limiter_plan.hpp"
+#include "adjacency.hpp"
 
 #include "patches.hpp"
 
