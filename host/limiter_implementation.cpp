@@ -183,8 +183,10 @@ void StrainLimiter::Implementation::queue_bound(CommandSequence& commands, cl_in
         // Directions are all that bound_vertices reads of the gradients: any scale will do.
         const cl_float one = 1.0f;
         commands.fill(arrays.vertex_bounds, &one, sizeof one, 0, vertex_count * sizeof one);
-        launch(commands, arguments::assemble_gradients(kernels.assemble_gradients, arrays, by_chebyshev(), 0));
     }
+    // The gradients of a sub-step before bound nothing: a sliver turns in between, and a polynomial grows without limit
+    // beyond its bound.
+    launch(commands, arguments::assemble_gradients(kernels.assemble_gradients, arrays, by_chebyshev(), sub_step));
     launch(commands, arguments::bound_vertices(kernels.bound_vertices, arrays));
 }
 

@@ -76,8 +76,7 @@ private:
     void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;
     /// Assembles sub-step `sub_step` and decides whether it is done.
     void queue_assembly(host::CommandSequence& commands, cl_int sub_step) const;
-    /// Leaves the bounds that sub-step `sub_step` scales the matrix by: of the geometry before, or of its own where it
-    /// is the first.
+    /// Leaves the bounds that sub-step `sub_step` scales the matrix by, of its own geometry.
     void queue_bound(host::CommandSequence& commands, cl_int sub_step) const;
     void queue_chebyshev(host::CommandSequence& commands, const host::CallBudget& budget, cl_int sub_step) const;
     void queue_conjugate_gradient(host::CommandSequence& commands, const host::CallBudget& budget,

@@ -41,7 +41,7 @@ APSL_INLINE lanes greatest_eigenvalue(apsl_symmetric m) {
 // Further safety factor where masses are raised: slivers turn fast.
 #define APSL_RAISED_MARGIN 1.2f
 
-// s_i, from the gradients of the last sub-step; a gradient of zero may get any direction. Moves 12 B corners, 2 B
+// s_i, from gradients in any scale; a gradient of zero may get any direction. Moves 12 B corners, 2 B
 // offsets, 24 B gradients read, 2 B written, a triangle; with raised masses 16 B more read.
 APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
                                 __global const apsl_solve_state* states, __global const uint* corner_offsets,

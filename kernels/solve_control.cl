@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The decisions of Algorithm 1, taken on the device by one work-group a cloth: judge the whole step, begin a solve, end a call.
-// Reference: apsl::reference, strain_limiter.
+// The decisions of Algorithm 1, taken on the device by one work-group a cloth: judge the whole step, begin a solve, end
+// a call. Reference: apsl::reference, strain_limiter.
 #include "accept_or_reject.h"
 #include "layout.h"
 #include "offender.h"

@@ -52,8 +52,8 @@ APSL_INLINE void order_values(apsl_cloth cloth, bool active, __global const uint
     }
 }
 
-// Safety factor of the bound of the matrix: the directions in it are those of an earlier sub-step, and the cloth has
-// moved since.
+// Safety factor of the bound of the matrix. With Options::bound_period above 1 the directions in it are those of an
+// earlier sub-step, and the cloth has moved since.
 #define APSL_BOUND_MARGIN 1.1f
 
 // B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|². Reference: apsl::reference::diagonal_bound. Written out: where LLVM unrolls it as

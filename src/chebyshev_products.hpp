@@ -6,8 +6,8 @@
 
 namespace apsl {
 
-/// Safety factor of the bound of the matrix: the directions in it are those of an earlier sub-step, and the cloth has
-/// moved since.
+/// Safety factor of the bound of the matrix. With Options::bound_period above 1 the directions in it are those of an
+/// earlier sub-step, and the cloth has moved since.
 inline constexpr float bound_margin = 1.1f;
 /// Further safety factor at vertices whose masses are raised: slivers turn fast.
 inline constexpr float raised_margin = 1.2f;

@@ -140,11 +140,18 @@ struct BasicStrainLimiter<Real>::Implementation {
             area_excess[a] = std::max(area_excess[a], Real(1 - greatest_growth) * geometry[a].area);
     }
 
+    /// The bounds that the matrix is scaled by, of the present geometry.
+    void bound_vertices(std::span<const Real> inverse_masses) {
+        vertex_bounds(*topology, std::span<const TriangleGeometry<Real>>(geometry), direction_bounds);
+        for (std::size_t i = 0; i < direction_bounds.size(); ++i)
+            if (masses.inverse[i] < inverse_masses[i]) direction_bounds[i] *= static_cast<Real>(raised_margin);
+    }
+
     /// A Chebyshev polynomial in place of a solve, of the degree that belongs to α; λ is left in `lambda`.
-    SolveResult<Real> solve_by_chebyshev(const ResolvedParameters& parameters) {
+    SolveResult<Real> solve_by_chebyshev(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         consistent_matrix(*topology, shared, triangles, std::span<const Real>(masses.inverse), G);
-        if (stats.sub_steps == 0) vertex_bounds(*topology, triangles, direction_bounds);
+        if (stats.sub_steps % bound_period == 0) bound_vertices(inverse_masses);
         diagonal_bound(*topology, triangles, std::span<const Real>(masses.inverse),
                        std::span<const Real>(direction_bounds), bound);
         bound *= static_cast<Real>(bound_margin);
@@ -159,7 +166,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// One solve of (G + (α − 1) diag G) λ = b at the present geometry; λ is left in `lambda`.
     SolveResult<Real> solve(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
         find_excess(buffers, parameters.walked);
-        if (options.solver == Solver::chebyshev) return solve_by_chebyshev(parameters);
+        if (options.solver == Solver::chebyshev) return solve_by_chebyshev(buffers.inverse_masses, parameters);
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         const std::span<const Real> inverse_masses = masses.inverse;
         if (options.matrix == Matrix::consistent)
@@ -188,15 +195,10 @@ struct BasicStrainLimiter<Real>::Implementation {
         return result;
     }
 
-    /// What sub-step stats.sub_steps leaves to the next: masses, and the bounds that the matrix is scaled by.
+    /// What sub-step stats.sub_steps leaves to the next.
     void prepare_next(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
-        const int next = stats.sub_steps + 1;
-        if (next == parameters.sub_steps) return;
-        if (parameters.raises_masses) masses.raise(buffers.inverse_masses);
-        if (options.solver != Solver::chebyshev || next % bound_period != 0) return;
-        vertex_bounds(*topology, std::span<const TriangleGeometry<Real>>(geometry), direction_bounds);
-        for (std::size_t i = 0; i < direction_bounds.size(); ++i)
-            if (masses.inverse[i] < buffers.inverse_masses[i]) direction_bounds[i] *= static_cast<Real>(raised_margin);
+        if (stats.sub_steps + 1 < parameters.sub_steps && parameters.raises_masses)
+            masses.raise(buffers.inverse_masses);
     }
 
     /// Corrects x_j. On a walk of `parts` parts a displacement of sub-step k changes the velocity too, by parts · Δx /

@@ -153,7 +153,7 @@ class Garments(Case):
     FIRST_FRAMES = 10  # for settling
     FRAMES = 120
     LIMITS = {50: 0.02, 5: 0.05}  # greatest area change by N/m
-    CHEBYSHEV_LIMITS = LIMITS
+    OTHER_LIMITS = {}  # of limiters that do not keep to these
     LIMITERS = {"none": None, "defaults": {}, "chebyshev": {"solver": "chebyshev"}}
     FRAMES_WANTED = False
 
@@ -184,7 +184,7 @@ class Garments(Case):
                     judge(mesh, stiffness, limiter)
 
     def limit(self, stiffness, limiter):
-        return (self.CHEBYSHEV_LIMITS if limiter == "chebyshev" else self.LIMITS)[stiffness]
+        return self.OTHER_LIMITS.get(limiter, self.LIMITS)[stiffness]
 
     def greatest(self, mesh, stiffness, limiter):
         return max(frame["max_area_change"] for frame in
@@ -212,7 +212,10 @@ class GarmentWithSlivers(Garments):
 
     PINS = {"dress": 1.6993}
     LIMITS = {50: 0.10, 5: 0.25}  # of triangles above the first percentile of rest area
-    CHEBYSHEV_LIMITS = {50: 0.10, 5: 0.50}  # chaotic: 0.16 to 0.31 for stiffnesses next to these
+    # Chaotic: 0.20 to 0.36 for stiffnesses next to 5. A smaller α takes a longer polynomial, which forgives a bound that
+    # does not hold even less.
+    LIMITERS = {**Garments.LIMITERS, "chebyshev_103": {"solver": "chebyshev", "regularization": 1.03}}
+    OTHER_LIMITS = {"chebyshev": {50: 0.10, 5: 0.50}, "chebyshev_103": {50: 0.20, 5: 0.50}}
     FRAMES_WANTED = True
 
     def test_areas_are_held(self):
