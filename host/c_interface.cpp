@@ -286,6 +286,12 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
         require(limiter, "limiter");
         require(buffers, "buffers");
         if (parameter_count > 0) require(parameters, "parameters");
+        // Before an entry is read: there may be fewer than the count says.
+        if (parameter_count != 1 && parameter_count != limiter->limiter.cloth_count())
+            throw apsl::Error(apsl::ErrorCode::invalid_argument, std::to_string(parameter_count) +
+                                                                     " parameters given for " +
+                                                                     std::to_string(limiter->limiter.cloth_count()) +
+                                                                     " cloths, expected one for each or a single one");
         std::vector<apsl::Parameters> list;
         for (size_t c = 0; c < parameter_count; ++c) list.push_back(parameters_from(parameters[c]));
         const apsl::Buffers views{.positions = view_from(buffers->positions),

@@ -33,7 +33,7 @@ DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency
     apsl_solve_state initial{};
     initial.adaptive_factor = 1.0f;
     arrays.states = upload(std::vector(cloth_count, initial));
-    arrays.stats = buffer(cloth_count * sizeof(apsl_stats));
+    arrays.stats = upload(std::vector<apsl_stats>(cloth_count));  // of no call: zeros
     if (!one_group) arrays.partials = buffer(cloth_count * groups * APSL_PARTIAL_KINDS * sizeof(float));
 
     arrays.vertex_order = upload(adjacency.vertex_order);

@@ -67,7 +67,7 @@ typedef enum apsl_limiter_offender {
 typedef enum apsl_program_binary_use {
     APSL_PROGRAM_BINARY_NONE_GIVEN = 0,       /**< no bytes */
     APSL_PROGRAM_BINARY_TAKEN = 1,            /**< nothing was compiled here */
-    APSL_PROGRAM_BINARY_NOT_A_BINARY = 2,     /**< not one of apsl's, cut short, or of another format version */
+    APSL_PROGRAM_BINARY_NOT_A_BINARY = 2,     /**< not one of apsl's, or of another format version */
     APSL_PROGRAM_BINARY_OTHER_PROGRAM = 3,    /**< of other kernels, options, device or driver */
     APSL_PROGRAM_BINARY_DAMAGED = 4,          /**< its bytes have changed */
     APSL_PROGRAM_BINARY_REFUSED_BY_DRIVER = 5 /**< sound as far as apsl can tell */

@@ -38,8 +38,8 @@ struct Buffers {
     /// m/s, 3 floats every Options::velocity_stride, [V]; ṽ in and out. Null with Options::positions_only.
     BufferView velocities;
     BufferView inverse_masses;       ///< 1/kg, 1 float every Options::inverse_mass_stride, [V], 0 pins a vertex
-    BufferView rest_areas;           ///< m², [T]; a triangle with rest area ≤ 0 is left alone
-    BufferView regularization = {};  ///< α ≥ 1, [T]; only with Options::regularization_per_triangle
+    BufferView rest_areas;           ///< m², [T]; 0 leaves a triangle alone, less is not legal
+    BufferView regularization = {};  ///< α ≥ 1, [T], less counts as 1; only with Options::regularization_per_triangle
 };
 
 APSL_STRUCTS_END
@@ -48,9 +48,9 @@ APSL_STRUCTS_END
 enum class ProgramBinaryUse : std::int32_t {
     none_given = 0,         ///< no bytes
     taken = 1,              ///< nothing was compiled here
-    not_a_binary = 2,       ///< not from StrainLimiter::program_binary, cut short, or of another format version
+    not_a_binary = 2,       ///< not from StrainLimiter::program_binary, or of another format version
     other_program = 3,      ///< of other kernels, options, device or driver
-    damaged = 4,            ///< its bytes have changed
+    damaged = 4,            ///< its bytes have changed, or some are missing
     refused_by_driver = 5,  ///< sound as far as this library can tell
 };
 
@@ -110,8 +110,9 @@ public:
     const Options& options() const noexcept;
 
     /// The compiled program, for the constructor of a later limiter with the same kernels, options, largest patch,
-    /// device and driver. May take as long as compiling did. Best asked for after a call has completed: some drivers
-    /// compile at the first launch. Empty where the driver gives none.
+    /// device and driver. May take as long as compiling did. Best asked for after a call has completed, for some
+    /// drivers compile at the first launch, and with no call pending, of this limiter or another of the same program:
+    /// pocl 3.1 may abort the process over one. Empty where the driver gives none.
     std::vector<std::byte> program_binary() const;
     /// What became of the binary given to the constructor; none_given after a rebuild() that compiled.
     ProgramBinaryUse program_binary_use() const noexcept;
@@ -135,6 +136,7 @@ public:
 
     /// Queues a non-blocking read of the last call's statistics, one entry for every cloth. `stats` must live until the
     /// returned event completes; the caller releases it. On an out-of-order queue put enqueue's event into wait_list.
+    /// Before the first call, and after a rebuild, all are zero.
     [[nodiscard]] cl_event read_stats(cl_command_queue queue, std::span<Stats> stats,
                                       std::span<const cl_event> wait_list = {}) const;
 

@@ -52,7 +52,10 @@ Mesh read_mesh(const MeshFile& source) {
     const std::string_view contents = without_byte_order_mark(bytes, file);
     PolygonMesh polygons = extension == ".obj" ? read_obj(contents, file) : read_ply(contents, file);
     if (polygons.positions.empty()) throw InputError(file + ": has no vertices");
-    if (polygons.faces.empty()) throw InputError(file + ": has no faces");
+    if (polygons.faces.empty()) {
+        const std::string why = polygons.warnings.empty() ? "" : " (" + polygons.warnings.front() + ")";
+        throw InputError(file + ": has no faces" + why);
+    }
     if (source.height) scale_to_height(polygons, *source.height);
     std::vector<std::uint32_t> welded_to;
     const double across = extent(polygons.positions);

@@ -190,7 +190,7 @@ PolygonMesh read_ply(std::string_view contents, const std::string& file) {
     for (const PlyElement& element : header.elements) {
         if (element.name == "tristrips" && element.count > 0 && has_faces)
             mesh.warnings.push_back(file + ": triangle strips beside faces: " + std::to_string(element.count) +
-                                    "; they are left out, as the same surface once more");
+                                    "; they are left out, taken for the same surface");
         // An element without properties takes no room in the file: its count bounds nothing and is not gone through.
         for (std::uint64_t n = 0; n < element.count && !element.properties.empty(); ++n) {
             if (element.name == "vertex")

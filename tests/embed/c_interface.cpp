@@ -128,6 +128,11 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 1, nullptr, &event) ==
           APSL_ERROR_INVALID_ARGUMENT);
     last_error_says("wait_list is null");
+    for (const size_t count : {size_t{3}, SIZE_MAX}) {  // of which only one is there
+        CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, count, 0, nullptr, &event) ==
+              APSL_ERROR_INVALID_ARGUMENT);
+        last_error_says("parameters given for 1 cloths, expected one for each or a single one");
+    }
     apsl_limiter_stats stats{};
     CHECK(apsl_limiter_read_stats(limiter, queue.get(), &stats, 1, 0, nullptr, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
     last_error_says("event is null");

@@ -7,6 +7,7 @@
 #include "support/device_cloth.hpp"
 
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <functional>
 
 using namespace apsl;
@@ -267,4 +268,25 @@ TEST_CASE("a limiter in the caller's scratch memory allocates nothing, and gives
                 StrainLimiter(device().context, device().id, topologies, options, {}, {scratch.get(), needed / 2}),
                 Catch::StartsWith("scratch holds"));
         }
+}
+
+TEST_CASE("statistics of no call are zeros, before the first one and after a rebuild", "[embed]") {
+    const MovingCloth cloth = a_cloth();
+    const Owned<cl_command_queue> queue = in_order_queue();
+    for (const Options& options : {variants[1], variants[4]}) {
+        StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+        const auto check_zeros = [&] {
+            Stats stats;
+            std::memset(&stats, 0xFF, sizeof stats);
+            require_success(wait_and_release(limiter.read_stats(queue.get(), {&stats, 1})), "the statistics");
+            const Stats zeros{};
+            CHECK(std::memcmp(&stats, &zeros, sizeof stats) == 0);
+        };
+        check_zeros();
+        const CallerBuffers buffers({&cloth, 1}, options);
+        const Parameters parameters{.sub_steps = 2};
+        CHECK(filter(limiter, buffers, {&parameters, 1})[0].sub_steps == 2);
+        limiter.rebuild(cloth.topology);
+        check_zeros();
+    }
 }

@@ -154,7 +154,7 @@ TEST_CASE("gather_displacements: counts iterations and adapts alpha's factor", "
 
 TEST_CASE(
     "gather_displacements: in small steps vertices too light for their tension move less, and weigh more from then on",
-    "[gather_displacements]") {
+    "[gather_displacements][walk]") {
     constexpr Parameters walk{.sub_steps = 30};
     const std::vector<Cloth> cloths{make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1)};
     const Cloth& cloth = cloths[0];
@@ -213,7 +213,7 @@ TEST_CASE(
 }
 
 TEST_CASE("gather_displacements: on a walk a displacement changes the velocity and carries on",
-          "[gather_displacements]") {
+          "[gather_displacements][walk]") {
     // Four parts; sub-step 1 leaves two of them after its own, sub-step 3 none, sub-step 4 only corrects.
     constexpr Parameters walk{.regularization = 1.2f, .sub_steps = 5, .stepping = Stepping::small_steps};
     const std::vector<Cloth> cloths{make_cloth(strip(300), 1)};

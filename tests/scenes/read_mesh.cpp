@@ -77,6 +77,7 @@ TEST_CASE("OBJ: what is wrong is named with its line and the file's own numbers"
         {"", ": has no vertices"},
         {"# nothing\n", ": has no vertices"},
         {corners, ": has no faces"},
+        {corners + "fo 1 2 3\n", ": has no faces ("},
     }));
     const std::string file = folder.write("bad.obj", contents);
     CAPTURE(contents);
@@ -308,9 +309,8 @@ TEST_CASE("PLY: triangle strips turn every other triangle round, -1 begins anew,
                         "3 0 1 3\n3 1 2 3\n3 0 1 2\n"));
     CHECK(faces.triangles == std::vector<Triangle>{{0, 1, 2}});
     REQUIRE(faces.warnings.size() == 1);
-    CHECK_THAT(faces.warnings[0],
-               Catch::EndsWith("both.ply: triangle strips beside faces: 2; they are left out, as the "
-                               "same surface once more"));
+    CHECK_THAT(faces.warnings[0], Catch::EndsWith("both.ply: triangle strips beside faces: 2; they are left out, "
+                                                  "taken for the same surface"));
     const std::string bad = folder.write("bad.ply", header + strips + "end_header\n" + points + "3 0 1 2\n3 0 1 -2\n");
     CHECK_THAT(error_of(bad), Catch::StartsWith(bad + ": face 1: vertex -2 is out of range"));
 }
