@@ -77,7 +77,7 @@ struct Options {
     /// more) is quicker (docs/formulation.md).
     std::uint32_t bound_period = 1;
 
-    bool operator==(const Options&) const = default;
+    bool operator==(const Options&) const = default;  ///< field by field
 };
 
 APSL_STRUCTS_END

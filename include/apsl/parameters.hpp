@@ -45,7 +45,7 @@ struct Parameters {
     /// what is kept for its next call stays.
     bool enabled = true;
 
-    bool operator==(const Parameters&) const = default;
+    bool operator==(const Parameters&) const = default;  ///< field by field
 };
 
 APSL_STRUCTS_END
