@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "caller_objects.hpp"
+
 #include <apsl/apsl.h>
 #include <apsl/strain_limiter.hpp>
 
@@ -287,11 +289,7 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
         require(buffers, "buffers");
         if (parameter_count > 0) require(parameters, "parameters");
         // Before an entry is read: there may be fewer than the count says.
-        if (parameter_count != 1 && parameter_count != limiter->limiter.cloth_count())
-            throw apsl::Error(apsl::ErrorCode::invalid_argument, std::to_string(parameter_count) +
-                                                                     " parameters given for " +
-                                                                     std::to_string(limiter->limiter.cloth_count()) +
-                                                                     " cloths, expected one for each or a single one");
+        apsl::host::check_parameter_count(parameter_count, limiter->limiter.cloth_count());
         std::vector<apsl::Parameters> list;
         for (size_t c = 0; c < parameter_count; ++c) list.push_back(parameters_from(parameters[c]));
         const apsl::Buffers views{.positions = view_from(buffers->positions),

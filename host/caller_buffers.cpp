@@ -2,15 +2,12 @@
 #include "caller_buffers.hpp"
 
 #include "caller_objects.hpp"
+#include "invalid.hpp"
 
 #include <string>
 
 namespace apsl::host {
 namespace {
-
-[[noreturn]] void invalid(const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, what);
-}
 
 // Floats from the first number of the first vertex to the last of the last.
 std::size_t vector_extent(std::size_t vertices, std::uint32_t stride, std::uint32_t component_stride) {

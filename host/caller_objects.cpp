@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "caller_objects.hpp"
 
+#include "invalid.hpp"
 #include "opencl_error.hpp"
 
 #include <apsl/error.hpp>
@@ -12,9 +13,7 @@ namespace apsl::host {
 namespace {
 
 // Messages are put together where something is wrong, and only there: a call makes these checks anew.
-[[noreturn]] void invalid(const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, what);
-}
+using apsl::invalid;
 
 [[noreturn]] void invalid(const char* name, const std::string& what) {
     invalid(std::string(name) + ' ' + what);
@@ -110,6 +109,12 @@ void check_queue(cl_command_queue queue, std::span<const cl_event> wait_list, cl
         if (info<cl_context>(clGetEventInfo, event, CL_EVENT_CONTEXT, "asking an event for its context") != context)
             invalid("wait_list[" + std::to_string(n) + "] is of another context, expected the limiter's");
     }
+}
+
+void check_parameter_count(std::size_t count, std::size_t cloths) {
+    if (count != 1 && count != cloths)
+        invalid(std::to_string(count) + " parameters given for " + std::to_string(cloths) +
+                " cloths, expected one for each or a single one");
 }
 
 }  // namespace apsl::host

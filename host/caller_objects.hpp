@@ -26,4 +26,7 @@ void check_scratch(const BufferView& scratch, cl_context context);
 /// A queue of the context and device, and events of the context.
 void check_queue(cl_command_queue queue, std::span<const cl_event> wait_list, cl_context context, cl_device_id device);
 
+/// Parameters for each of the cloths, or one set for all of them.
+void check_parameter_count(std::size_t count, std::size_t cloths);
+
 }  // namespace apsl::host

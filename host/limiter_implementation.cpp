@@ -3,6 +3,7 @@
 
 #include "caller_objects.hpp"
 #include "device_parameters.hpp"
+#include "invalid.hpp"
 #include "kernel_arguments.hpp"
 #include "limiter_options.hpp"
 #include "opencl_error.hpp"
@@ -28,10 +29,6 @@ static_assert(static_cast<int>(Status::worsened) == APSL_STATUS_WORSENED);
 static_assert(static_cast<int>(Status::diverged) == APSL_STATUS_DIVERGED);
 static_assert(static_cast<int>(Status::off) == APSL_STATUS_OFF);
 static_assert(static_cast<int>(Offender::triangle) == APSL_OFFENDER_TRIANGLE);
-
-[[noreturn]] void invalid(const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, what);
-}
 
 void check_topologies(std::span<const std::shared_ptr<const Topology>> cloths) {
     if (cloths.empty()) invalid("no cloths given, expected at least one");
@@ -225,9 +222,7 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
 cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Buffers& buffers,
                                                 std::span<const Parameters> given,
                                                 std::span<const cl_event> wait_list) {
-    if (given.size() != 1 && given.size() != cloth_count)
-        invalid(std::to_string(given.size()) + " parameters given for " + std::to_string(cloth_count) +
-                " cloths, expected one for each or a single one");
+    check_parameter_count(given.size(), cloth_count);
     CallBudget budget;
     resolved.clear();
     for (const Parameters& p : given) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "limiter_options.hpp"
 
+#include "invalid.hpp"
+
 #include <apsl/error.hpp>
 
 #include <algorithm>
@@ -14,10 +16,6 @@ namespace {
 std::size_t one_group_triangles(const DeviceFacts& facts) {
     constexpr std::size_t least = 6144;
     return facts.is_cpu && facts.compute_units > 1 ? least * facts.compute_units / (facts.compute_units - 1) : least;
-}
-
-[[noreturn]] void invalid(const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, what);
 }
 
 // Vertices side by side, or components in runs: otherwise two numbers share a place.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fields.hpp"
 #include "finite.hpp"
+#include "invalid.hpp"
 
 #include <apsl/error.hpp>
 
@@ -11,10 +12,6 @@
 
 namespace apsl {
 namespace {
-
-[[noreturn]] void invalid(const std::string& what) {
-    throw Error(ErrorCode::invalid_argument, what);
-}
 
 std::string number(double value) {
     std::ostringstream text;
