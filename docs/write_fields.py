@@ -15,7 +15,6 @@ import sys
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
-NOT_IN_SCENES = {"time_step", "enabled", "work_group_size", "regularization_per_triangle"}
 LARGEST = 2**31 - 1  # of a whole number in a scene
 WIDTH = 120
 
@@ -52,7 +51,7 @@ def schema_line(field):
 
 
 def with_schema(text, fields):
-    wanted = [field for field in fields["options"] + fields["parameters"] if field["name"] not in NOT_IN_SCENES]
+    wanted = [field for field in fields["options"] + fields["parameters"] if field["in_scenes"]]
     lines = ",\n".join(schema_line(field) for field in wanted)
     pattern = re.compile(r'("strain_limiting": \{\n.*?"properties": \{\n).*?(\n      \}\n    \},)', re.DOTALL)
     changed, count = pattern.subn(lambda match: match[1] + lines + match[2], text, count=1)

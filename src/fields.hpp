@@ -40,13 +40,16 @@ struct Field {
     Bounds bounds;  ///< of a number
     const char* unit;
     const char* text;  ///< documentation, a line
+    bool in_scenes =
+        true;  ///< a key of strain_limiting; otherwise a scene says it elsewhere, or leaves it to the device
 };
 
 inline constexpr Bounds any_whole{.least = 0.0};
 inline constexpr Bounds at_least_one{.least = 1.0};
 
 inline constexpr std::tuple parameter_fields{
-    Field{"time_step", &Parameters::time_step, Bounds{.least = 0.0, .least_excluded = true}, "s", "Δt of Algorithm 1."},
+    Field{"time_step", &Parameters::time_step, Bounds{.least = 0.0, .least_excluded = true}, "s", "Δt of Algorithm 1.",
+          false},
     Field{"regularization", &Parameters::regularization, at_least_one, "",
           "α, multiplies the diagonal of G (Section 4). Not read where each triangle has its own."},
     Field{"sub_steps", &Parameters::sub_steps, any_whole, "", "Solves a call, at most."},
@@ -66,7 +69,7 @@ inline constexpr std::tuple parameter_fields{
     Field{"stepping", &Parameters::stepping, Bounds{}, "",
           "Which positions each sub-step linearises about. whole_step: the end of the step. small_steps: all but the "
           "last move on by an equal part of the step and correct there. automatic: small steps from 20 sub-steps up."},
-    Field{"enabled", &Parameters::enabled, Bounds{}, "", "false: the cloth is left alone."},
+    Field{"enabled", &Parameters::enabled, Bounds{}, "", "false: the cloth is left alone.", false},
 };
 
 inline constexpr std::tuple option_fields{
@@ -77,9 +80,9 @@ inline constexpr std::tuple option_fields{
           "How the device divides a call. many_groups: a launch for each step of the filter. one_group: one work-group "
           "for all of it. automatic: one_group for small cloths."},
     Field{"work_group_size", &Options::work_group_size, any_whole, "",
-          "Work-items a group, a power of two. 0: what suits the device."},
+          "Work-items a group, a power of two. 0: what suits the device.", false},
     Field{"regularization_per_triangle", &Options::regularization_per_triangle, Bounds{}, "",
-          "Each triangle has its own α, given with every call."},
+          "Each triangle has its own α, given with every call.", false},
     Field{"kept_pressures", &Options::kept_pressures, Bounds{.least = 0.0, .greatest = 65536.0}, "",
           "The pressures of this many sub-steps are the first guess for the solves of the next call. 0: solves start "
           "from zero."},

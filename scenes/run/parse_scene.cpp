@@ -12,7 +12,6 @@
 #include <apsl/error.hpp>
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <string_view>
 #include <type_traits>
@@ -127,10 +126,6 @@ Integrator parse_integrator(SceneObject object) {
     return integrator;
 }
 
-// What a scene says otherwise, or leaves to the device.
-constexpr std::string_view kFieldsOfNoScene[] = {"time_step", "enabled", "work_group_size",
-                                                 "regularization_per_triangle", "regularization"};
-
 Range range_of(const Bounds& bounds) {
     // Where 0 is legal beside a range, validate() tells.
     return {.min = bounds.zero ? 0.0 : bounds.least,
@@ -141,7 +136,7 @@ Range range_of(const Bounds& bounds) {
 
 template <class Struct, class Value>
 void parse_field(SceneObject& object, const Field<Struct, Value>& field, Struct& values) {
-    if (std::ranges::find(kFieldsOfNoScene, std::string_view(field.name)) != std::end(kFieldsOfNoScene)) return;
+    if (!field.in_scenes) return;
     Value& value = values.*field.member;
     if constexpr (std::is_enum_v<Value>) {
         std::array<std::pair<const char*, Value>, names_of<Value>.size()> choices;
@@ -175,7 +170,9 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     StrainLimiting settings;
     for_each_field(option_fields, [&](const auto& field) { parse_field(object, field, settings.options); });
     parse_regularization(object, settings);
-    for_each_field(parameter_fields, [&](const auto& field) { parse_field(object, field, settings.parameters); });
+    for_each_field(parameter_fields, [&](const auto& field) {
+        if (field.name != std::string_view("regularization")) parse_field(object, field, settings.parameters);
+    });
     settings.parameters.time_step = static_cast<float>(time_step);
     object.refuse_other_keys();
     try {

@@ -53,6 +53,7 @@ Json described(const std::tuple<Fields...>& table) {
         json["bounds"] = described(field.bounds);
         json["unit"] = field.unit;
         json["text"] = field.text;
+        json["in_scenes"] = field.in_scenes;
         fields.push_back(json);
     });
     return fields;
