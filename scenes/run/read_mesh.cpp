@@ -9,10 +9,10 @@
 #include "run/read_obj.hpp"
 #include "run/read_ply.hpp"
 #include "run/weld.hpp"
+#include "run/words.hpp"
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -31,12 +31,6 @@ void scale_to_height(PolygonMesh& mesh, double height) {
     }
     const double scale = height / (highest - lowest);
     for (double& coordinate : mesh.positions) coordinate *= scale;
-}
-
-std::string shown(double length) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", length);
-    return text;
 }
 
 }  // namespace
@@ -65,8 +59,8 @@ Mesh read_mesh(const MeshFile& source) {
     if (mesh.triangles.empty()) {
         std::string what = file + ": has no faces that enclose anything";
         if (source.weld > 0.0) {
-            what += " once vertices within mesh.weld, " + shown(source.weld) + " m, are one; the mesh extends over " +
-                    shown(across) + " m";
+            what += " once vertices within mesh.weld, " + short_number(source.weld) +
+                    " m, are one; the mesh extends over " + short_number(across) + " m";
         }
         throw InputError(what);
     }

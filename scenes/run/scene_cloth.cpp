@@ -5,12 +5,12 @@
 #include "run/read_mesh.hpp"
 #include "run/select_vertices.hpp"
 #include "run/start_positions.hpp"
+#include "run/words.hpp"
 
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
 
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace apsl::scenes {
@@ -61,11 +61,9 @@ void note_start_inside(const Scene& scene, const ClothState& cloth, std::vector<
     for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
         const StartInside inside = start_inside(cloth, scene.colliders[k]);
         if (inside.vertices == 0) continue;
-        char depth[32];
-        std::snprintf(depth, sizeof depth, "%.3g", inside.depth);
         warnings.push_back(scene.file + ": colliders[" + std::to_string(k) +
-                           "]: vertices that start inside: " + std::to_string(inside.vertices) + ", by up to " + depth +
-                           " m; they are led out slowly, move the cloth or the collider");
+                           "]: vertices that start inside: " + std::to_string(inside.vertices) + ", by up to " +
+                           short_number(inside.depth) + " m; they are led out slowly, move the cloth or the collider");
     }
 }
 

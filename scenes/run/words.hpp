@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -41,6 +42,13 @@ inline std::string quoted(std::string_view text) {
         shown += code < 0x20 || code == 0x7f ? '?' : letter;
     }
     return shown.append(text.size() > 60 ? "...\"" : "\"");
+}
+
+/// For messages and tables: three digits.
+inline std::string short_number(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", number);
+    return text;
 }
 
 /// The number that all of the word is; false where it is none. Whole ones out of Number's range are none; others

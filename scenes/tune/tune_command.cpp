@@ -6,6 +6,7 @@
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
 #include "run/whole_file.hpp"
+#include "run/words.hpp"
 #include "tune/scene_text.hpp"
 #include "tune/tuning_search.hpp"
 
@@ -38,7 +39,7 @@ public:
                      trial.settings.steps_per_frame, std::string(name_of(options.solver)).c_str(), parameters.sub_steps,
                      std::string(name_of(parameters.stepping)).c_str(),
                      parameters.first_regularization > 0.0f ? parameters.first_regularization : last, last,
-                     has_tolerance ? tolerance_text(parameters.tolerance).c_str() : "-", parameters.max_iterations,
+                     has_tolerance ? short_number(parameters.tolerance).c_str() : "-", parameters.max_iterations,
                      trial.frames, 100.0 * trial.max_area_change, 1e3 * trial.limiter_seconds, 1e3 * trial.seconds(),
                      verdict(trial, goal));
     }
@@ -50,12 +51,6 @@ public:
     }
 
 private:
-    static std::string tolerance_text(float tolerance) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.3g", tolerance);
-        return text;
-    }
-
     static const char* verdict(const Trial& trial, const TuningGoal& goal) {
         if (trial.cut_short) return "given up";
         if (!std::isfinite(trial.max_area_change)) return "diverged";

@@ -25,7 +25,7 @@ double quiet_time(std::vector<double> seconds) {
     return *place;
 }
 
-// A scene that was tuned says so much of itself, whatever the defaults become.
+// A tuned scene names these whatever they are, so that later defaults do not change it.
 bool is_always_written(std::string_view name) {
     constexpr std::string_view names[] = {"sub_steps", "regularization", "tolerance", "max_iterations"};
     return std::ranges::find(names, name) != std::end(names);
