@@ -128,7 +128,8 @@ def listed(documents, find):
         if len(found) > MOST_LISTED:
             found[MOST_LISTED - 1:] = [f"and {len(found) - MOST_LISTED + 1} more"]
         if found:
-            lines.append(f"- {document.get('title', 'Single cases')}: " + "; ".join(found) + ".")
+            lines.append(f"- {document.get('title', 'Single cases')}:")
+            lines += [f"  - {point}" for point in found]
     return lines or ["None."]
 
 
