@@ -212,10 +212,11 @@ class Summary(unittest.TestCase):
         self.assertIn("| 1 | 1 | 1 | – | 2 (PBD) |", summary.table([document])[2])
 
     def test_long_lists_are_cut(self):
-        line, = summary.listed([made_up_map()], lambda _: [str(n) for n in range(20)])
-        self.assertTrue(line.endswith("; 10; and 9 more."), line)
-        line, = summary.listed([made_up_map()], lambda _: [str(n) for n in range(12)])
-        self.assertTrue(line.endswith("; 10; 11."), line)
+        title, *points = summary.listed([made_up_map()], lambda _: [str(n) for n in range(20)])
+        self.assertTrue(title.startswith("- ") and title.endswith(":"), title)
+        self.assertEqual(points, [f"  - {n}" for n in range(11)] + ["  - and 9 more"])
+        _, *points = summary.listed([made_up_map()], lambda _: [str(n) for n in range(12)])
+        self.assertEqual(points, [f"  - {n}" for n in range(12)])
 
     def test_names_of_points(self):
         self.assertEqual(summary.named("place", "at the hem"), "place at the hem")
