@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Speed against accuracy: runs the studies of bench/studies, ours and every rival, and draws their charts into
+# Speed against accuracy: runs the studies of bench/studies, ours and every baseline, and draws their charts into
 # docs/accuracy/. Runs that docs/accuracy/*.json already hold are not made again: delete a file to measure it anew.
 #   bench/compare.sh                    all studies; about an hour and a half on two cores that do nothing else
 #   bench/compare.sh curtain_8k ...     these studies

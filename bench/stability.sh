@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The atlas of failure: runs ours and the rivals over the maps and cases of bench/stability/maps.py and draws them into
+# The atlas of failure: runs ours and the baselines over the maps and cases of bench/stability/maps.py and draws them into
 # docs/stability/. Whole results stay in build/stability.
 #   bench/stability.sh                  all; half an hour on two cores that do nothing else
 #   bench/stability.sh needles ...      these
 #   bench/stability.sh --resume         all, without the runs that an interrupted call left in build/stability
-#   bench/stability.sh --ours           all, but the rivals' runs from build/stability: after a change of the library
+#   bench/stability.sh --ours           all, but the baselines' runs from build/stability: after a change of the library
 #   bench/stability.sh --coarse         all, every second value of the axes: a quarter of the time
 #   bench/stability.sh --charts         the pictures alone, from the outcomes that are there
 set -euo pipefail
@@ -15,7 +15,7 @@ keep=nothing
 every=1
 case "${1:-}" in
   --resume) keep=all; shift ;;
-  --ours) keep=rivals; shift ;;
+  --ours) keep=baselines; shift ;;
   --coarse) every=2; shift ;;
   --charts) measure=false; shift ;;
 esac

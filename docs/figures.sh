@@ -7,8 +7,11 @@ cd "$(dirname "$0")/.."
 cmake/debian_packages.sh
 cmake --preset program >/dev/null
 cmake --build --preset program
+cmake --preset bench >/dev/null
+cmake --build --preset bench --target traced_cloth
 program=build/program/apsl
 embedded=build/program/scenes/embedded/embedded_cloth
+traced=build/bench/bench/embedded/traced_cloth
 runs=out/figures
 mkdir -p "$runs" docs/pictures docs/charts
 
@@ -44,7 +47,7 @@ mkdir -p "$runs/embedded"
 echo '{"colliders": [{"sphere": {"center": [0, -0.35, 0], "radius": 0.3}}]}' > "$runs/embedded/colliders.json"
 "$embedded" --out "$runs/embedded"
 still embedded last --scene "$runs/embedded/colliders.json" --azimuth 50 --elevation 20
-"$embedded" --frames 16 --trace "$runs/embedded/trace.json"
+"$traced" --frames 16 --trace "$runs/embedded/trace.json"
 scenes/pictures/draw_trace.py "$runs/embedded/trace.json" --out docs/pictures/embedded_trace.png
 
 bench/charts/area_change_curves.py "$runs/curtain_unfiltered/report.json" "$runs/curtain/report.json" \

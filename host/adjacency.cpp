@@ -33,7 +33,7 @@ std::vector<std::uint32_t> inverse(const std::vector<std::uint32_t>& order) {
 }
 
 void append_pattern(Adjacency& out, const Topology& topology, const Patches& patches, const Places& places,
-                    Matrix matrix, const apsl_cloth& cloth) {
+                    Matrix matrix, const apslk_cloth& cloth) {
     const CsrPattern pattern = topology.csr_pattern(matrix);
     index(out.columns.size() + pattern.columns.size(), max_index, "matrix entries");
     for (const std::uint32_t triangle : patches.triangle_order) {
@@ -45,7 +45,7 @@ void append_pattern(Adjacency& out, const Topology& topology, const Patches& pat
     }
 }
 
-void append_patches(Adjacency& out, const Patches& patches, const apsl_cloth& cloth) {
+void append_patches(Adjacency& out, const Patches& patches, const apslk_cloth& cloth) {
     std::vector<std::uint32_t> local(cloth.vertex_count, 0), seen(cloth.vertex_count, max_index);
     for (std::uint32_t patch = 0; patch + 1 < patches.patch_offsets.size(); ++patch) {
         const auto first_vertex = static_cast<std::uint32_t>(out.patch_vertices.size());
@@ -87,7 +87,7 @@ Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloth
     if (with_pattern) out.row_offsets.push_back(0);
     std::size_t vertices = 0, triangles = 0, rest_areas = 0;
     for (const auto& topology : cloths) {
-        apsl_cloth cloth{};
+        apslk_cloth cloth{};
         cloth.vertex_begin = index(vertices, max_index, "vertices");
         cloth.vertex_count = index(topology->vertex_count(), max_index, "vertices");
         // Two bits of a corner hold its number.
@@ -117,16 +117,16 @@ Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloth
         vertices += topology->vertex_count();
         rest_areas += topology->triangle_count();
         triangles += topology->triangle_count();
-        constexpr std::size_t alignment = APSL_TRIANGLE_ALIGNMENT;
+        constexpr std::size_t alignment = APSLK_TRIANGLE_ALIGNMENT;
         triangles = (triangles + alignment - 1) / alignment * alignment;
         // Padding names a vertex of the cloth itself, so that it is as finite as the cloth.
         out.triangles.resize(3 * triangles, cloth.vertex_begin);
         out.triangle_order.resize(triangles, 0);
         out.local_triangles.resize(3 * triangles, 0);
         if (with_pattern) out.row_offsets.resize(triangles + 1, out.row_offsets.back());
-        cloth.patch_begin = static_cast<apsl_uint>(out.patches.size());
+        cloth.patch_begin = static_cast<apslk_uint>(out.patches.size());
         append_patches(out, patches, cloth);
-        cloth.patch_count = static_cast<apsl_uint>(out.patches.size()) - cloth.patch_begin - 1;
+        cloth.patch_count = static_cast<apslk_uint>(out.patches.size()) - cloth.patch_begin - 1;
         out.cloths.push_back(cloth);
     }
     out.vertex_count = index(vertices, max_index, "vertices");

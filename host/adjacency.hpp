@@ -14,10 +14,10 @@ namespace apsl::host {
 
 /// The adjacency of all cloths one after another, in the layout the kernels read. Host memory, before the upload.
 struct Adjacency {
-    std::vector<apsl_cloth> cloths;
+    std::vector<apslk_cloth> cloths;
     std::vector<std::uint32_t> vertex_order;    ///< [V], place in the limiter's arrays -> place in the caller's
     std::vector<std::uint32_t> triangle_order;  ///< [T'], likewise
-    std::vector<std::uint32_t> triangles;       ///< [3 T'], T' padded for each cloth to APSL_TRIANGLE_ALIGNMENT
+    std::vector<std::uint32_t> triangles;       ///< [3 T'], T' padded for each cloth to APSLK_TRIANGLE_ALIGNMENT
     std::vector<std::uint32_t> corner_offsets;  ///< [V + 1]
     std::vector<std::uint32_t> corners;         ///< [3 T], 4 · triangle + corner number
     std::vector<std::uint32_t> row_offsets;     ///< [T' + 1], empty without a pattern

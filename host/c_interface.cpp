@@ -22,10 +22,10 @@ struct apsl_limiter {
 
 namespace {
 
-static_assert(sizeof(apsl_limiter_stats) == sizeof(apsl::Stats));
-static_assert(static_cast<int>(apsl::Status::worsened) == APSL_LIMITER_WORSENED);
-static_assert(static_cast<int>(apsl::Status::diverged) == APSL_LIMITER_DIVERGED);
-static_assert(static_cast<int>(apsl::Status::off) == APSL_LIMITER_OFF);
+static_assert(sizeof(apsl_stats) == sizeof(apsl::Stats));
+static_assert(static_cast<int>(apsl::Status::worsened) == APSL_STATUS_WORSENED);
+static_assert(static_cast<int>(apsl::Status::diverged) == APSL_STATUS_DIVERGED);
+static_assert(static_cast<int>(apsl::Status::off) == APSL_STATUS_OFF);
 static_assert(static_cast<int>(apsl::Offender::triangle) == APSL_OFFENDER_TRIANGLE);
 static_assert(static_cast<int>(apsl::Stepping::small_steps) == APSL_STEPPING_SMALL_STEPS);
 static_assert(static_cast<int>(apsl::Solver::chebyshev) == APSL_SOLVER_CHEBYSHEV);
@@ -88,8 +88,8 @@ std::span<const cl_event> events(cl_uint wait_count, const cl_event* wait_list) 
 }
 
 /// The defaults where there are none.
-apsl::Options options_from(const apsl_limiter_options* options) {
-    const apsl_limiter_options o = options ? *options : apsl_limiter_default_options();
+apsl::Options options_from(const apsl_options* options) {
+    const apsl_options o = options ? *options : apsl_default_options();
     require_reserved_zero(o, "options");
     return {.matrix = static_cast<apsl::Matrix>(o.matrix),
             .apply = static_cast<apsl::Apply>(o.apply),
@@ -102,12 +102,12 @@ apsl::Options options_from(const apsl_limiter_options* options) {
             .inverse_mass_stride = o.inverse_mass_stride,
             .positions_only = o.positions_only != 0,
             .regularization_per_triangle = o.regularization_per_triangle != 0,
-            .kept_pressures = o.kept_pressures,
+            .warm_start_sub_steps = o.warm_start_sub_steps,
             .solver = static_cast<apsl::Solver>(o.solver),
-            .bound_period = o.bound_period};
+            .bound_interval = o.bound_interval};
 }
 
-apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
+apsl::Parameters parameters_from(const apsl_parameters& p) {
     require_reserved_zero(p, "parameters");
     return {.time_step = p.time_step,
             .regularization = p.regularization,
@@ -115,7 +115,7 @@ apsl::Parameters parameters_from(const apsl_limiter_parameters& p) {
             .target_area_change = p.target_area_change,
             .tolerance = p.tolerance,
             .max_iterations = p.max_iterations,
-            .adaptive_iterations = p.adaptive_iterations,
+            .adaptive_threshold = p.adaptive_threshold,
             .first_regularization = p.first_regularization,
             .stepping = static_cast<apsl::Stepping>(p.stepping),
             .enabled = p.enabled != 0};
@@ -136,7 +136,7 @@ std::vector<std::shared_ptr<const apsl::Topology>> topologies_from(const apsl_to
 }
 
 void create(cl_context context, cl_device_id device, const apsl_topology* const* cloths, size_t cloth_count,
-            const apsl_limiter_options* options, const void* binary, size_t size, const apsl::BufferView& scratch,
+            const apsl_options* options, const void* binary, size_t size, const apsl::BufferView& scratch,
             apsl_limiter** limiter) {
     require(limiter, "limiter");
     *limiter = nullptr;
@@ -160,7 +160,7 @@ const char* apsl_last_error(void) {
     return last_error.data();
 }
 
-apsl_limiter_options apsl_limiter_default_options(void) {
+apsl_options apsl_default_options(void) {
     const apsl::Options o;
     return {static_cast<int32_t>(o.matrix),
             static_cast<int32_t>(o.apply),
@@ -173,13 +173,13 @@ apsl_limiter_options apsl_limiter_default_options(void) {
             o.inverse_mass_stride,
             o.positions_only,
             o.regularization_per_triangle,
-            o.kept_pressures,
+            o.warm_start_sub_steps,
             static_cast<int32_t>(o.solver),
-            o.bound_period,
+            o.bound_interval,
             {}};
 }
 
-apsl_limiter_parameters apsl_limiter_default_parameters(void) {
+apsl_parameters apsl_default_parameters(void) {
     const apsl::Parameters p;
     return {p.time_step,
             p.regularization,
@@ -187,7 +187,7 @@ apsl_limiter_parameters apsl_limiter_default_parameters(void) {
             p.target_area_change,
             p.tolerance,
             p.max_iterations,
-            p.adaptive_iterations,
+            p.adaptive_threshold,
             p.first_regularization,
             static_cast<int32_t>(p.stepping),
             p.enabled,
@@ -212,18 +212,18 @@ void apsl_topology_destroy(apsl_topology* topology) {
 }
 
 apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
-                                size_t cloth_count, const apsl_limiter_options* options, apsl_limiter** limiter) {
+                                size_t cloth_count, const apsl_options* options, apsl_limiter** limiter) {
     return apsl_limiter_create_from_binary(context, device, cloths, cloth_count, options, nullptr, 0, limiter);
 }
 
 apsl_result apsl_limiter_create_from_binary(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
-                                            size_t cloth_count, const apsl_limiter_options* options, const void* binary,
+                                            size_t cloth_count, const apsl_options* options, const void* binary,
                                             size_t size, apsl_limiter** limiter) {
     return guarded([&] { create(context, device, cloths, cloth_count, options, binary, size, {}, limiter); });
 }
 
 apsl_result apsl_limiter_create_in_scratch(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
-                                           size_t cloth_count, const apsl_limiter_options* options, const void* binary,
+                                           size_t cloth_count, const apsl_options* options, const void* binary,
                                            size_t size, const apsl_buffer_view* scratch, apsl_limiter** limiter) {
     return guarded([&] {
         if (limiter) *limiter = nullptr;
@@ -234,8 +234,7 @@ apsl_result apsl_limiter_create_in_scratch(cl_context context, cl_device_id devi
 }
 
 apsl_result apsl_limiter_required_scratch_bytes(cl_device_id device, const apsl_topology* const* cloths,
-                                                size_t cloth_count, const apsl_limiter_options* options,
-                                                size_t* bytes) {
+                                                size_t cloth_count, const apsl_options* options, size_t* bytes) {
     return guarded([&] {
         require(bytes, "bytes");
         *bytes = 0;
@@ -281,8 +280,8 @@ apsl_program_binary_use apsl_limiter_program_binary_use(const apsl_limiter* limi
                    : APSL_PROGRAM_BINARY_NONE_GIVEN;
 }
 
-apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, const apsl_limiter_buffers* buffers,
-                                 const apsl_limiter_parameters* parameters, size_t parameter_count, cl_uint wait_count,
+apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, const apsl_buffers* buffers,
+                                 const apsl_parameters* parameters, size_t parameter_count, cl_uint wait_count,
                                  const cl_event* wait_list, cl_event* event) {
     return guarded([&] {
         require(limiter, "limiter");
@@ -315,7 +314,7 @@ apsl_result apsl_limiter_enqueue_rest_areas(apsl_limiter* limiter, cl_command_qu
     });
 }
 
-apsl_result apsl_limiter_read_stats(const apsl_limiter* limiter, cl_command_queue queue, apsl_limiter_stats* stats,
+apsl_result apsl_limiter_read_stats(const apsl_limiter* limiter, cl_command_queue queue, apsl_stats* stats,
                                     size_t stats_count, cl_uint wait_count, const cl_event* wait_list,
                                     cl_event* event) {
     return guarded([&] {

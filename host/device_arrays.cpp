@@ -29,12 +29,12 @@ DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency
     DeviceArrays arrays;
     arrays.groups = groups;
     arrays.cloths = upload(adjacency.cloths);
-    arrays.parameters = buffer(cloth_count * sizeof(apsl_parameters));
-    apsl_solve_state initial{};
+    arrays.parameters = buffer(cloth_count * sizeof(apslk_parameters));
+    apslk_solve_state initial{};
     initial.adaptive_factor = 1.0f;
     arrays.states = upload(std::vector(cloth_count, initial));
-    arrays.stats = upload(std::vector<apsl_stats>(cloth_count));  // of no call: zeros
-    if (!one_group) arrays.partials = buffer(cloth_count * groups * APSL_PARTIAL_KINDS * sizeof(float));
+    arrays.stats = upload(std::vector<apslk_stats>(cloth_count));  // of no call: zeros
+    if (!one_group) arrays.partials = buffer(cloth_count * groups * APSLK_PARTIAL_KINDS * sizeof(float));
 
     arrays.vertex_order = upload(adjacency.vertex_order);
     arrays.triangle_order = upload(adjacency.triangle_order);
@@ -53,28 +53,26 @@ DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency
     if (options.apply == Apply::assembled_csr) arrays.values = buffer(adjacency.columns.size() * sizeof(float));
 
     arrays.ordered_rest_areas = zeroed(triangle_count);
-    arrays.ordered_regularization =
-        upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
+    arrays.ordered_scaling = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
     if (by_chebyshev) arrays.vertex_bounds = buffer(vertex_count * sizeof(float));
-    arrays.predicted = buffer(vertex_count * sizeof(cl_float4));
-    const std::size_t walking_vertices = options.positions_only ? 1 : vertex_count;
-    arrays.motion = buffer(walking_vertices * sizeof(cl_float4));
-    arrays.correction = buffer(walking_vertices * sizeof(cl_float4));
+    arrays.moved = buffer(vertex_count * sizeof(cl_float4));
+    const std::size_t moving_vertices = options.positions_only ? 1 : vertex_count;
+    arrays.motion = buffer(moving_vertices * sizeof(cl_float4));
+    arrays.total_correction = buffer(moving_vertices * sizeof(cl_float4));
     arrays.start_errors = zeroed(options.positions_only ? 1 : triangle_count);
     arrays.gradients = buffer(triangle_count * gradient_bytes);
     arrays.residual = zeroed(triangle_count);
-    arrays.damped_diagonal = zeroed(triangle_count);
+    arrays.scaled_diagonal = zeroed(triangle_count);
     arrays.direction = buffer(triangle_count * sizeof(float));
     if (!by_chebyshev) {
         arrays.product = zeroed(triangle_count);
         arrays.direction_product = buffer(triangle_count * sizeof(float));
     }
-    if (one_group) {
-        arrays.pressures.push_back(zeroed(triangle_count * std::size_t{1 + options.kept_pressures}));
-    } else {
-        for (std::uint32_t n = 0; n < std::max(options.kept_pressures, 1u); ++n)
+    if (one_group)
+        arrays.pressures.push_back(zeroed(triangle_count * std::size_t{1 + options.warm_start_sub_steps}));
+    else
+        for (std::uint32_t n = 0; n < std::max(options.warm_start_sub_steps, 1u); ++n)
             arrays.pressures.push_back(zeroed(triangle_count));
-    }
     return arrays;
 }
 

@@ -6,7 +6,7 @@
 
 namespace apsl::host {
 
-apsl_parameters device_parameters(const ResolvedParameters& p) {
+apslk_parameters device_parameters(const ResolvedParameters& p) {
     const bool scheduled = p.first_alpha != p.regularization;
     const float damping_step =
         scheduled ? std::log2((p.first_alpha - 1.0f) / (p.regularization - 1.0f)) / static_cast<float>(p.sub_steps - 1)
@@ -21,8 +21,8 @@ apsl_parameters device_parameters(const ResolvedParameters& p) {
             .tolerance_squared = tolerance * tolerance,
             .sub_steps = on ? p.sub_steps : 0,
             .max_iterations = p.max_iterations,
-            .adaptive_iterations = p.adaptive_iterations,
-            .walked = p.walked,
+            .adaptive_threshold = p.adaptive_threshold,
+            .small_steps = p.small_steps,
             .enabled = on,
             .raises_masses = p.raises_masses,
             .padding = {}};

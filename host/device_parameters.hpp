@@ -8,6 +8,6 @@
 namespace apsl::host {
 
 /// What the kernels read of them.
-apsl_parameters device_parameters(const ResolvedParameters& p);
+apslk_parameters device_parameters(const ResolvedParameters& p);
 
 }  // namespace apsl::host

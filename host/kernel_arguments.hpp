@@ -11,7 +11,7 @@
 namespace apsl::host::arguments {
 
 template <class Arrays>
-const Kernel& set_parameters(const Kernel& kernel, const Arrays& a, const apsl_parameter_block& block, cl_uint first,
+const Kernel& set_parameters(const Kernel& kernel, const Arrays& a, const apslk_parameter_block& block, cl_uint first,
                              cl_uint count) {
     return set_arguments(kernel, a.parameters, block, first, count);
 }
@@ -24,19 +24,19 @@ const Kernel& rest_areas(const Kernel& kernel, const Arrays& a, const BufferView
 
 template <class Arrays>
 const Kernel& predict_positions(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.predicted,
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.moved,
                          a.motion, caller.positions, corrected(caller), caller.inverse_masses);
 }
 
 template <class Arrays>
 const Kernel& order_triangle_values(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.triangle_order, a.ordered_rest_areas,
-                         a.ordered_regularization, caller.rest_areas, regularization_or_any(caller));
+    return set_arguments(kernel, a.cloths, a.parameters, a.triangle_order, a.ordered_rest_areas, a.ordered_scaling,
+                         caller.rest_areas, regularization_or_any(caller));
 }
 
 template <class Arrays>
 const Kernel& measure_step(const Kernel& kernel, const Arrays& a) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.predicted, a.motion,
+    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.moved, a.motion,
                          a.ordered_rest_areas, a.start_errors);
 }
 
@@ -46,16 +46,16 @@ const Kernel& judge_whole_step(const Kernel& kernel, const Arrays& a) {
 }
 
 template <class Arrays>
-const Kernel& start_walk(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.predicted, a.motion, a.correction,
-                         caller.velocities);
+const Kernel& start_small_steps(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.moved, a.motion,
+                         a.total_correction, caller.velocities);
 }
 
 template <class Arrays>
 const Kernel& assemble_gradients(const Kernel& kernel, const Arrays& a, bool by_chebyshev, cl_int sub_step) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients,
-                         a.residual, a.damped_diagonal, a.ordered_rest_areas,
-                         by_chebyshev ? a.vertex_bounds : a.ordered_regularization, a.start_errors, sub_step);
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.moved, a.gradients,
+                         a.residual, a.scaled_diagonal, a.ordered_rest_areas,
+                         by_chebyshev ? a.vertex_bounds : a.ordered_scaling, a.start_errors, sub_step);
 }
 
 template <class Arrays>
@@ -65,7 +65,7 @@ const Kernel& begin_solve(const Kernel& kernel, const Arrays& a, cl_int sub_step
 
 template <class Arrays>
 const Kernel& assemble_pressure_csr(const Kernel& kernel, const Arrays& a) {
-    return set_arguments(kernel, a.cloths, a.states, a.triangles, a.predicted, a.gradients, a.row_offsets, a.columns,
+    return set_arguments(kernel, a.cloths, a.states, a.triangles, a.moved, a.gradients, a.row_offsets, a.columns,
                          a.shared, a.values);
 }
 
@@ -78,7 +78,7 @@ const Kernel& csr_spmv_dot(const Kernel& kernel, const Arrays& a, const Array& m
 
 template <class Arrays, class Array>
 const Kernel& matrix_free_printed(const Kernel& kernel, const Arrays& a, const Array& multiplied, cl_int iteration) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.predicted, a.gradients,
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.moved, a.gradients,
                          a.row_offsets, a.columns, a.shared, multiplied, a.product, iteration);
 }
 
@@ -95,12 +95,12 @@ const Kernel& measure_guess(const Kernel& kernel, const Arrays& a, const Array& 
 
 template <class Arrays, class Array>
 const Kernel& start_from_guess(const Kernel& kernel, const Arrays& a, const Array& pressure) {
-    return set_arguments(kernel, a.cloths, a.states, a.partials, a.residual, a.damped_diagonal, a.product, pressure);
+    return set_arguments(kernel, a.cloths, a.states, a.partials, a.residual, a.scaled_diagonal, a.product, pressure);
 }
 
 template <class Arrays, class Array>
 const Kernel& cg_update(const Kernel& kernel, const Arrays& a, const Array& pressure, cl_int iteration) {
-    return set_arguments(kernel, a.cloths, a.states, a.partials, a.residual, a.damped_diagonal, a.product, a.direction,
+    return set_arguments(kernel, a.cloths, a.states, a.partials, a.residual, a.scaled_diagonal, a.product, a.direction,
                          a.direction_product, pressure, iteration);
 }
 
@@ -108,14 +108,14 @@ const Kernel& cg_update(const Kernel& kernel, const Arrays& a, const Array& pres
 template <class Arrays, class Array>
 const Kernel& finish_solve(const Kernel& kernel, const Arrays& a, const Array& pressure, cl_int iterations) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.patches, a.patch_vertices,
-                         a.local_triangles, a.corner_offsets, a.corners, a.gradients, a.residual, a.damped_diagonal,
+                         a.local_triangles, a.corner_offsets, a.corners, a.gradients, a.residual, a.scaled_diagonal,
                          a.product, a.direction, a.direction_product, pressure, a.groups, iterations);
 }
 
 template <class Arrays>
 const Kernel& bound_vertices(const Kernel& kernel, const Arrays& a) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.corner_offsets, a.corners, a.gradients,
-                         a.predicted, a.motion, a.vertex_bounds);
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.corner_offsets, a.corners, a.gradients, a.moved,
+                         a.motion, a.vertex_bounds);
 }
 
 /// Launch `launch` of `launched`. The last one writes the pressure; those before it take turns with the direction.
@@ -133,24 +133,24 @@ template <class Arrays, class Array>
 const Kernel& gather_displacements(const Kernel& kernel, const Arrays& a, const Array& pressure, cl_int sub_step,
                                    cl_uint slot) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.corner_offsets, a.corners,
-                         a.gradients, pressure, a.predicted, a.motion, a.correction, sub_step, slot);
+                         a.gradients, pressure, a.moved, a.motion, a.total_correction, sub_step, slot);
 }
 
 template <class Arrays>
 const Kernel& measure_area_change(const Kernel& kernel, const Arrays& a) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.predicted, a.motion,
+    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.moved, a.motion,
                          a.ordered_rest_areas);
 }
 
 template <class Arrays>
 const Kernel& end_call(const Kernel& kernel, const Arrays& a) {
     return set_arguments(kernel, a.cloths, a.states, a.stats, a.partials, a.vertex_order, a.triangle_order, a.triangles,
-                         a.predicted, a.ordered_rest_areas, a.groups);
+                         a.moved, a.ordered_rest_areas, a.groups);
 }
 
 template <class Arrays>
 const Kernel& update_velocities(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.predicted, a.correction,
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.moved, a.total_correction,
                          caller.positions, corrected(caller));
 }
 
@@ -160,8 +160,8 @@ const Kernel& filter_in_one_group(const Kernel& kernel, const Arrays& a, const A
                                   cl_uint pressure_stride) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.triangle_order,
                          a.triangles, a.patches, a.patch_vertices, a.local_triangles, a.corner_offsets, a.corners,
-                         a.predicted, a.motion, a.correction, a.gradients, a.residual, a.damped_diagonal, a.product,
-                         a.direction, a.direction_product, pressure, a.ordered_rest_areas, a.ordered_regularization,
+                         a.moved, a.motion, a.total_correction, a.gradients, a.residual, a.scaled_diagonal, a.product,
+                         a.direction, a.direction_product, pressure, a.ordered_rest_areas, a.ordered_scaling,
                          a.start_errors, caller.positions, corrected(caller), caller.inverse_masses, caller.rest_areas,
                          regularization_or_any(caller), pressure_stride);
 }

@@ -18,17 +18,17 @@ namespace {
 
 using namespace host;
 
-static_assert(sizeof(Stats) == sizeof(apsl_stats));
-static_assert(offsetof(Stats, residual) == offsetof(apsl_stats, residual));
-static_assert(offsetof(Stats, status) == offsetof(apsl_stats, status));
-static_assert(offsetof(Stats, offender_index) == offsetof(apsl_stats, offender_index));
-static_assert(offsetof(Stats, greatest_mass_ratio) == offsetof(apsl_stats, greatest_mass_ratio));
-static_assert(std::has_single_bit(sizeof(apsl_parameters)), "clEnqueueFillBuffer takes powers of two");
-static_assert(static_cast<int>(Status::not_converged) == APSL_STATUS_NOT_CONVERGED);
-static_assert(static_cast<int>(Status::worsened) == APSL_STATUS_WORSENED);
-static_assert(static_cast<int>(Status::diverged) == APSL_STATUS_DIVERGED);
-static_assert(static_cast<int>(Status::off) == APSL_STATUS_OFF);
-static_assert(static_cast<int>(Offender::triangle) == APSL_OFFENDER_TRIANGLE);
+static_assert(sizeof(Stats) == sizeof(apslk_stats));
+static_assert(offsetof(Stats, residual) == offsetof(apslk_stats, residual));
+static_assert(offsetof(Stats, status) == offsetof(apslk_stats, status));
+static_assert(offsetof(Stats, offender_index) == offsetof(apslk_stats, offender_index));
+static_assert(offsetof(Stats, greatest_mass_ratio) == offsetof(apslk_stats, greatest_mass_ratio));
+static_assert(std::has_single_bit(sizeof(apslk_parameters)), "clEnqueueFillBuffer takes powers of two");
+static_assert(static_cast<int>(Status::not_converged) == APSLK_STATUS_NOT_CONVERGED);
+static_assert(static_cast<int>(Status::worsened) == APSLK_STATUS_WORSENED);
+static_assert(static_cast<int>(Status::diverged) == APSLK_STATUS_DIVERGED);
+static_assert(static_cast<int>(Status::off) == APSLK_STATUS_OFF);
+static_assert(static_cast<int>(Offender::triangle) == APSLK_OFFENDER_TRIANGLE);
 
 void check_topologies(std::span<const std::shared_ptr<const Topology>> cloths) {
     if (cloths.empty()) invalid("no cloths given, expected at least one");
@@ -111,7 +111,7 @@ void StrainLimiter::Implementation::create_arrays(const Adjacency& adjacency) {
     triangle_count = adjacency.triangle_count;
     caller_counts = {adjacency.vertex_count, adjacency.rest_area_count};
     std::uint32_t largest = 1;
-    for (const apsl_cloth& cloth : adjacency.cloths)
+    for (const apslk_cloth& cloth : adjacency.cloths)
         largest = std::max({largest, cloth.triangle_count, cloth.vertex_count});
     arrays = make_device_arrays(memory, adjacency, options, group_count(facts, options, largest));
 }
@@ -120,13 +120,13 @@ void StrainLimiter::Implementation::queue_parameters(CommandSequence& commands,
                                                      std::span<const ResolvedParameters> given) const {
     // A fill takes its pattern at once and a launch its arguments, so nothing of the caller's has to outlive this call.
     if (given.size() == 1) {
-        const apsl_parameters pattern = device_parameters(given[0]);
+        const apslk_parameters pattern = device_parameters(given[0]);
         commands.fill(arrays.parameters, &pattern, sizeof pattern, 0, cloth_count * sizeof pattern);
         return;
     }
-    for (cl_uint first = 0; first < cloth_count; first += APSL_PARAMETER_BLOCK) {
-        const cl_uint count = std::min<cl_uint>(cloth_count - first, APSL_PARAMETER_BLOCK);
-        apsl_parameter_block block{};
+    for (cl_uint first = 0; first < cloth_count; first += APSLK_PARAMETER_BLOCK) {
+        const cl_uint count = std::min<cl_uint>(cloth_count - first, APSLK_PARAMETER_BLOCK);
+        apslk_parameter_block block{};
         std::transform(given.begin() + first, given.begin() + first + count, block.entry, device_parameters);
         commands.launch(arguments::set_parameters(kernels.set_parameters, arrays, block, first, count), 1,
                         options.work_group_size, 1);
@@ -161,7 +161,7 @@ void StrainLimiter::Implementation::queue_conjugate_gradient(CommandSequence& co
         arrays.pressures[std::min(static_cast<std::size_t>(sub_step), arrays.pressures.size() - 1)];
     queue_assembly(commands, sub_step);
     if (assembled()) launch(commands, arguments::assemble_pressure_csr(kernels.assemble_pressure_csr, arrays));
-    if (options.kept_pressures > 0) queue_guess(commands, pressure);
+    if (options.warm_start_sub_steps > 0) queue_guess(commands, pressure);
     const cl_int queued =
         kernels.finish_solve.handle ? queued_iterations(largest_cloth, budget, sub_step) : budget.max_iterations;
     for (cl_int k = 0; k < queued; ++k) {
@@ -190,7 +190,7 @@ void StrainLimiter::Implementation::queue_bound(CommandSequence& commands, cl_in
 void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, const CallBudget& budget,
                                                     cl_int sub_step) const {
     const BufferHandle& pressure = arrays.pressures[0];
-    if (static_cast<std::uint32_t>(sub_step) % options.bound_period == 0) queue_bound(commands, sub_step);
+    if (static_cast<std::uint32_t>(sub_step) % options.bound_interval == 0) queue_bound(commands, sub_step);
     queue_assembly(commands, sub_step);
     const cl_int products = queued_products(budget, sub_step);
     for (cl_int k = 0; k < products; ++k)
@@ -202,17 +202,16 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
                                                       const CallBudget& budget) const {
     launch(commands, arguments::predict_positions(kernels.predict_positions, arrays, buffers));
     launch(commands, arguments::order_triangle_values(kernels.order_triangle_values, arrays, buffers));
-    if (budget.walks) {
+    if (budget.takes_small_steps) {
         launch(commands, arguments::measure_step(kernels.measure_step, arrays));
         launch_one_group(commands, arguments::judge_whole_step(kernels.judge_whole_step, arrays));
-        launch(commands, arguments::start_walk(kernels.start_walk, arrays, buffers));
+        launch(commands, arguments::start_small_steps(kernels.start_small_steps, arrays, buffers));
     }
-    for (cl_int sub_step = 0; sub_step < budget.sub_steps; ++sub_step) {
+    for (cl_int sub_step = 0; sub_step < budget.sub_steps; ++sub_step)
         if (by_chebyshev())
             queue_chebyshev(commands, budget, sub_step);
         else
             queue_conjugate_gradient(commands, budget, sub_step);
-    }
     launch(commands, arguments::measure_area_change(kernels.measure_area_change, arrays));
     launch_one_group(commands, arguments::end_call(kernels.end_call, arrays));
     if (budget.sub_steps > 0)

@@ -16,7 +16,7 @@ LimiterKernels create_kernels(cl_program program, const Options& options) {
     create(kernels.order_triangle_values, "order_triangle_values");
     create(kernels.measure_step, "measure_step");
     create(kernels.judge_whole_step, "judge_whole_step");
-    if (!options.positions_only) create(kernels.start_walk, "start_walk");
+    if (!options.positions_only) create(kernels.start_small_steps, "start_small_steps");
     create(kernels.assemble_gradients, "assemble_gradients");
     create(kernels.begin_solve, "begin_solve");
     create(kernels.gather_displacements, "gather_displacements");
@@ -36,7 +36,7 @@ LimiterKernels create_kernels(cl_program program, const Options& options) {
         create(kernels.matrix_free_apply_dot, "matrix_free_apply_dot");
         if (options.matrix == Matrix::consistent) create(kernels.finish_solve, "finish_solve");
     }
-    if (options.kept_pressures > 0) {
+    if (options.warm_start_sub_steps > 0) {
         create(kernels.measure_guess, "measure_guess");
         create(kernels.start_from_guess, "start_from_guess");
     }

@@ -42,9 +42,9 @@ bool matrix_free_consistent(const Options& options) {
     return options.matrix == Matrix::consistent && options.apply == Apply::matrix_free;
 }
 
-// With first guesses or with α per triangle as well a GPU's kernel needs more registers than there are.
+// With warm starts or with α per triangle as well a GPU's kernel needs more registers than there are.
 bool one_group_fits(const Options& options, const DeviceFacts& facts) {
-    return facts.is_cpu || (options.kept_pressures == 0 && !options.regularization_per_triangle);
+    return facts.is_cpu || (options.warm_start_sub_steps == 0 && !options.regularization_per_triangle);
 }
 
 Execution resolve_execution(const Options& options, const DeviceFacts& facts, std::size_t largest) {
@@ -58,9 +58,9 @@ Execution resolve_execution(const Options& options, const DeviceFacts& facts, st
             return options.execution;
         case Execution::one_group:
             if (!one_group_fits(options, facts))
-                throw Error(
-                    ErrorCode::unsupported,
-                    "execution is one_group, which takes kept_pressures and regularization_per_triangle on a CPU only");
+                throw Error(ErrorCode::unsupported,
+                            "execution is one_group, which takes warm_start_sub_steps and regularization_per_triangle "
+                            "on a CPU only");
             return options.execution;
     }
     return options.execution;
@@ -103,13 +103,13 @@ std::vector<std::string_view> kernel_files(const Options& options) {
     std::vector<std::string_view> files{"set_parameters.cl",       "predict_positions.cl",   "order_triangle_values.cl",
                                         "assemble_gradients.cl",   "measure_area_change.cl", "solve_control.cl",
                                         "gather_displacements.cl", "update_velocities.cl",   "rest_areas.cl"};
-    if (!options.positions_only) files.push_back("start_walk.cl");
+    if (!options.positions_only) files.push_back("start_small_steps.cl");
     if (options.solver == Solver::chebyshev) {
         files.insert(files.end(), {"bound_matrix.cl", "chebyshev_step.cl"});
         return files;
     }
     files.push_back("cg_update.cl");
-    if (options.kept_pressures > 0) files.push_back("first_guess.cl");
+    if (options.warm_start_sub_steps > 0) files.push_back("warm_start.cl");
     if (options.apply == Apply::assembled_csr)
         files.insert(files.end(), {"assemble_pressure_csr.cl", "csr_spmv_dot.cl"});
     else if (options.matrix == Matrix::printed)
@@ -128,18 +128,18 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
     const auto define = [](const char* name, std::uint32_t value) {
         return std::string(" -D ") + name + "=" + std::to_string(value);
     };
-    return "-cl-std=CL1.2" + define("APSL_WORK_GROUP_SIZE", options.work_group_size) +
-           define("APSL_POSITION_STRIDE", options.position_stride) +
-           define("APSL_VELOCITY_STRIDE", options.velocity_stride) +
-           define("APSL_POSITION_COMPONENT_STRIDE", options.position_component_stride) +
-           define("APSL_VELOCITY_COMPONENT_STRIDE", options.velocity_component_stride) +
-           define("APSL_INVERSE_MASS_STRIDE", options.inverse_mass_stride) +
-           define("APSL_POSITIONS_ONLY", options.positions_only ? 1 : 0) +
-           define("APSL_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
-           define("APSL_PATCH_VERTICES", patch_vertices) +
-           define("APSL_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +
-           define("APSL_KEPT_PRESSURES", options.kept_pressures) +
-           define("APSL_CHEBYSHEV", options.solver == Solver::chebyshev ? 1 : 0);
+    return "-cl-std=CL1.2" + define("APSLK_WORK_GROUP_SIZE", options.work_group_size) +
+           define("APSLK_POSITION_STRIDE", options.position_stride) +
+           define("APSLK_VELOCITY_STRIDE", options.velocity_stride) +
+           define("APSLK_POSITION_COMPONENT_STRIDE", options.position_component_stride) +
+           define("APSLK_VELOCITY_COMPONENT_STRIDE", options.velocity_component_stride) +
+           define("APSLK_INVERSE_MASS_STRIDE", options.inverse_mass_stride) +
+           define("APSLK_POSITIONS_ONLY", options.positions_only ? 1 : 0) +
+           define("APSLK_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
+           define("APSLK_PATCH_VERTICES", patch_vertices) +
+           define("APSLK_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +
+           define("APSLK_WARM_START_SUB_STEPS", options.warm_start_sub_steps) +
+           define("APSLK_CHEBYSHEV", options.solver == Solver::chebyshev ? 1 : 0);
 }
 
 std::uint32_t patch_triangles(const DeviceFacts& facts, const Options& options, std::size_t largest) {

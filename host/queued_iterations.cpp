@@ -38,7 +38,7 @@ void CallBudget::add(const ResolvedParameters& p) {
                                 regularization == p.regularization);
     sub_steps = std::max(sub_steps, p.sub_steps);
     max_iterations = std::max(max_iterations, p.max_iterations);
-    walks = walks || p.walked > 0;
+    takes_small_steps = takes_small_steps || p.small_steps > 0;
     first_alpha = std::min(first_alpha, p.first_alpha);
     regularization = std::min(regularization, p.regularization);
     tolerance = std::min(tolerance, p.solve_tolerance);

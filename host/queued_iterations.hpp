@@ -12,8 +12,8 @@ namespace apsl::host {
 struct CallBudget {
     int sub_steps = 0;
     int max_iterations = 0;
-    bool walks = false;        ///< a cloth takes small steps
-    bool one_schedule = true;  ///< α is the same for all cloths, sub-step by sub-step
+    bool takes_small_steps = false;  ///< a cloth takes small steps
+    bool one_schedule = true;        ///< α is the same for all cloths, sub-step by sub-step
     // The least of any: what makes for the longest solves.
     float first_alpha = std::numeric_limits<float>::infinity();
     float regularization = std::numeric_limits<float>::infinity();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Accepts or rejects the result of a call. Reference: apsl::reference, is_worse.
-#ifndef APSL_ACCEPT_OR_REJECT_H
-#define APSL_ACCEPT_OR_REJECT_H
+#ifndef APSLK_ACCEPT_OR_REJECT_H
+#define APSLK_ACCEPT_OR_REJECT_H
 
 #include "layout.h"
 
@@ -11,27 +11,27 @@ typedef struct {
     float rms;         // weighted with A⁰
     float capped_rms;  // the same with each triangle's counted as at most 1
     float measured;    // Σ A⁰, m²
-} apsl_area_change;
+} apslk_area_change;
 
 typedef struct {
     bool worse;  // the velocities stay as given
     bool rose;   // the status is worsened
     bool names;  // the result stands, and the triangle with the greatest area change is named
-} apsl_verdict;
+} apslk_verdict;
 
 // A greatest area change that rounding makes in a cloth at rest: positions up to `extent` from the origin are off by
 // their resolution, and `triangle_count` triangles share a rest area of `measured`.
-APSL_INLINE float greatest_change_at_rest(float extent, float measured, uint triangle_count) {
+APSLK_INLINE float greatest_change_at_rest(float extent, float measured, uint triangle_count) {
     const float rounding =
-        measured > 0.0f ? APSL_POSITION_RESOLUTION * extent * sqrt((float)triangle_count / measured) : 0.0f;
-    return isfinite(rounding) ? fmax(rounding, APSL_AT_REST) : APSL_AT_REST;
+        measured > 0.0f ? APSLK_POSITION_RESOLUTION * extent * sqrt((float)triangle_count / measured) : 0.0f;
+    return isfinite(rounding) ? fmax(rounding, APSLK_AT_REST) : APSLK_AT_REST;
 }
 
 // The capped RMS decides, so that a single triangle does not cost the others their correction.
-APSL_INLINE apsl_verdict judge(apsl_area_change initial, apsl_area_change change, float change_at_rest) {
+APSLK_INLINE apslk_verdict judge(apslk_area_change initial, apslk_area_change change, float change_at_rest) {
     const bool rose = change.max > initial.max || change.rms > initial.rms || change.capped_rms > initial.capped_rms;
     const bool at_rest = initial.max <= change_at_rest;
-    apsl_verdict verdict;
+    apslk_verdict verdict;
     verdict.worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
     verdict.rose = rose && !at_rest;
     verdict.names = !verdict.worse && change.max > initial.max;
@@ -39,15 +39,16 @@ APSL_INLINE apsl_verdict judge(apsl_area_change initial, apsl_area_change change
 }
 
 // The area change at x̃ + Δt ṽ, kept for the end of the call; none where it is not finite.
-APSL_INLINE void store_initial(__global apsl_solve_state* state, __global apsl_stats* stats, apsl_area_change change,
-                               bool finite) {
+APSLK_INLINE void store_initial(__global apslk_solve_state* state, __global apslk_stats* stats,
+                                apslk_area_change change, bool finite) {
     stats->initial_max_area_change = finite ? change.max : 0.0f;
     stats->initial_rms_area_change = finite ? change.rms : 0.0f;
     state->initial_capped_rms = finite ? change.capped_rms : 0.0f;
 }
 
-APSL_INLINE apsl_area_change stored_initial(__global const apsl_solve_state* state, __global const apsl_stats* stats) {
-    apsl_area_change initial;
+APSLK_INLINE apslk_area_change stored_initial(__global const apslk_solve_state* state,
+                                              __global const apslk_stats* stats) {
+    apslk_area_change initial;
     initial.max = stats->initial_max_area_change;
     initial.rms = stats->initial_rms_area_change;
     initial.capped_rms = state->initial_capped_rms;
@@ -56,7 +57,7 @@ APSL_INLINE apsl_area_change stored_initial(__global const apsl_solve_state* sta
 }
 
 // The statistics of the state that stands.
-APSL_INLINE void store_area_change(__global apsl_stats* stats, apsl_area_change standing) {
+APSLK_INLINE void store_area_change(__global apslk_stats* stats, apslk_area_change standing) {
     stats->max_area_change = standing.max;
     stats->rms_area_change = standing.rms;
 }

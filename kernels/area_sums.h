@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a launch finds out about the areas of its triangles. Reference: apsl::reference, area change.
-#ifndef APSL_AREA_SUMS_H
-#define APSL_AREA_SUMS_H
+#ifndef APSLK_AREA_SUMS_H
+#define APSLK_AREA_SUMS_H
 
 #include "accept_or_reject.h"
 #include "layout.h"
@@ -10,10 +10,10 @@
 
 typedef struct {
     lanes max_change, squared_change, capped_change, measured, not_finite;
-} apsl_area_sums;
+} apslk_area_sums;
 
-APSL_INLINE apsl_area_sums no_areas(void) {
-    apsl_area_sums sums;
+APSLK_INLINE apslk_area_sums no_areas(void) {
+    apslk_area_sums sums;
     sums.max_change = 0.0f;
     sums.squared_change = 0.0f;
     sums.capped_change = 0.0f;
@@ -22,26 +22,26 @@ APSL_INLINE apsl_area_sums no_areas(void) {
     return sums;
 }
 
-// A cloth's triangles are taken in blocks of APSL_LANES; the last one may reach into the padding,
+// A cloth's triangles are taken in blocks of APSLK_LANES; the last one may reach into the padding,
 // where there are no rest areas.
-APSL_INLINE uint blocks_of(apsl_cloth cloth) {
-    return (cloth.triangle_count + APSL_LANES - 1u) / APSL_LANES;
+APSLK_INLINE uint blocks_of(apslk_cloth cloth) {
+    return (cloth.triangle_count + APSLK_LANES - 1u) / APSLK_LANES;
 }
 
 // |A − A⁰| / A⁰; 0 where there is no rest area.
-APSL_INLINE lanes relative_change(apsl_triangle_geometry triangle, lanes rest_area) {
+APSLK_INLINE lanes relative_change(apslk_triangle_geometry triangle, lanes rest_area) {
     return select((lanes)(0.0f), fabs(triangle.area - rest_area) / rest_area, rest_area > 0.0f);
 }
 
 // Not finite where the diagonal, the rest area or the square of the area or of its change is not, or the rest area is
 // negative: a NaN or an infinity in any of them survives their sum.
-APSL_INLINE lanes area_witness(apsl_triangle_geometry triangle, lanes rest_area) {
+APSLK_INLINE lanes area_witness(apslk_triangle_geometry triangle, lanes rest_area) {
     const lanes change = relative_change(triangle, rest_area);
     return select((lanes)(INFINITY), triangle.area * triangle.area + change * change + triangle.diagonal + rest_area,
                   rest_area >= 0.0f);
 }
 
-APSL_INLINE void add_areas(apsl_area_sums* sums, apsl_triangle_geometry triangle, lanes rest_area) {
+APSLK_INLINE void add_areas(apslk_area_sums* sums, apslk_triangle_geometry triangle, lanes rest_area) {
     const lanes change = relative_change(triangle, rest_area);
     sums->max_change = select(sums->max_change, change, change > sums->max_change);
     const lanes weight = select((lanes)(0.0f), rest_area, rest_area > 0.0f);
@@ -53,8 +53,8 @@ APSL_INLINE void add_areas(apsl_area_sums* sums, apsl_triangle_geometry triangle
 }
 
 // From the sums over a cloth.
-APSL_INLINE apsl_area_change area_change_of(float max, float squared, float capped, float measured) {
-    apsl_area_change change;
+APSLK_INLINE apslk_area_change area_change_of(float max, float squared, float capped, float measured) {
+    apslk_area_change change;
     change.max = max;
     change.measured = measured;
     change.rms = measured > 0.0f ? sqrt(squared / measured) : 0.0f;
@@ -63,19 +63,19 @@ APSL_INLINE apsl_area_change area_change_of(float max, float squared, float capp
 }
 
 // By a work-group that has all triangles of a cloth; there are barriers inside.
-APSL_INLINE apsl_area_change area_change_in_group(apsl_area_sums sums, __local float* scratch) {
+APSLK_INLINE apslk_area_change area_change_in_group(apslk_area_sums sums, __local float* scratch) {
     const float squared = group_sum(sum_of_lanes(sums.squared_change), scratch);
     const float capped = group_sum(sum_of_lanes(sums.capped_change), scratch);
     const float measured = group_sum(sum_of_lanes(sums.measured), scratch);
     return area_change_of(group_max(max_of_lanes(sums.max_change), scratch), squared, capped, measured);
 }
 
-APSL_INLINE void store_area_partials(apsl_area_sums sums, __global float* partials, __local float* scratch) {
-    store_partial(partials, APSL_PARTIAL_MAX_CHANGE, group_max(max_of_lanes(sums.max_change), scratch));
-    store_partial(partials, APSL_PARTIAL_SQUARED_CHANGE, group_sum(sum_of_lanes(sums.squared_change), scratch));
-    store_partial(partials, APSL_PARTIAL_CAPPED_CHANGE, group_sum(sum_of_lanes(sums.capped_change), scratch));
-    store_partial(partials, APSL_PARTIAL_MEASURED, group_sum(sum_of_lanes(sums.measured), scratch));
-    store_partial(partials, APSL_PARTIAL_NOT_FINITE, group_sum(sum_of_lanes(sums.not_finite), scratch));
+APSLK_INLINE void store_area_partials(apslk_area_sums sums, __global float* partials, __local float* scratch) {
+    store_partial(partials, APSLK_PARTIAL_MAX_CHANGE, group_max(max_of_lanes(sums.max_change), scratch));
+    store_partial(partials, APSLK_PARTIAL_SQUARED_CHANGE, group_sum(sum_of_lanes(sums.squared_change), scratch));
+    store_partial(partials, APSLK_PARTIAL_CAPPED_CHANGE, group_sum(sum_of_lanes(sums.capped_change), scratch));
+    store_partial(partials, APSLK_PARTIAL_MEASURED, group_sum(sum_of_lanes(sums.measured), scratch));
+    store_partial(partials, APSLK_PARTIAL_NOT_FINITE, group_sum(sum_of_lanes(sums.not_finite), scratch));
 }
 
 #endif

@@ -7,18 +7,18 @@
 #include "matrix_entries.h"
 #include "work_group.h"
 
-APSL_KERNEL void assemble_pressure_csr(__global const apsl_cloth* cloths, __global const apsl_solve_state* states,
-                                       __global const uint* triangles, __global const float4* predicted,
-                                       __global const apsl_gradients* gradients, __global const uint* row_offsets,
-                                       __global const uint* columns, __global const uchar* shared,
-                                       __global float* values) {
+APSLK_KERNEL void assemble_pressure_csr(__global const apslk_cloth* cloths, __global const apslk_solve_state* states,
+                                        __global const uint* triangles, __global const float4* moved,
+                                        __global const apslk_gradients* gradients, __global const uint* row_offsets,
+                                        __global const uint* columns, __global const uchar* shared,
+                                        __global float* values) {
     const uint c = (uint)get_group_id(1);
-    const apsl_cloth cloth = cloths[c];
-    const apsl_range range = share_of(cloth.triangle_count, !states[c].stopped);
-    for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
+    const apslk_cloth cloth = cloths[c];
+    const apslk_range range = share_of(cloth.triangle_count, !states[c].stopped);
+    for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
         const uint end = row_offsets[a + 1];
         for (uint e = row_offsets[a]; e < end; ++e)
-            values[e] = matrix_entry(triangles, predicted, gradients, a, columns[e], shared[e]);
+            values[e] = matrix_entry(triangles, moved, gradients, a, columns[e], shared[e]);
     }
 }

@@ -10,10 +10,10 @@
 // Symmetric 3×3 matrices.
 typedef struct {
     lanes xx, yy, zz, xy, xz, yz;
-} apsl_symmetric;
+} apslk_symmetric;
 
-APSL_INLINE apsl_symmetric squared(apsl_symmetric m) {
-    apsl_symmetric s;
+APSLK_INLINE apslk_symmetric squared(apslk_symmetric m) {
+    apslk_symmetric s;
     s.xx = m.xx * m.xx + m.xy * m.xy + m.xz * m.xz;
     s.yy = m.xy * m.xy + m.yy * m.yy + m.yz * m.yz;
     s.zz = m.xz * m.xz + m.yz * m.yz + m.zz * m.zz;
@@ -24,7 +24,7 @@ APSL_INLINE apsl_symmetric squared(apsl_symmetric m) {
 }
 
 // (Σ λ³²)^(1/32) over the eigenvalues, none below 0: the greatest, or up to 1.04 times that.
-APSL_INLINE lanes greatest_eigenvalue(apsl_symmetric m) {
+APSLK_INLINE lanes greatest_eigenvalue(apslk_symmetric m) {
     const lanes trace = m.xx + m.yy + m.zz;
     const lanes inverse = select((lanes)(0.0f), 1.0f / trace, trace > 0.0f);
     m.xx *= inverse;
@@ -33,28 +33,25 @@ APSL_INLINE lanes greatest_eigenvalue(apsl_symmetric m) {
     m.xy *= inverse;
     m.xz *= inverse;
     m.yz *= inverse;
-    const apsl_symmetric p = squared(squared(squared(squared(m))));
+    const apslk_symmetric p = squared(squared(squared(squared(m))));
     const lanes sum = p.xx * p.xx + p.yy * p.yy + p.zz * p.zz + 2.0f * (p.xy * p.xy + p.xz * p.xz + p.yz * p.yz);
     return trace * sqrt(sqrt(sqrt(sqrt(sqrt(sum)))));
 }
 
-// Further safety factor where masses are raised: slivers turn fast.
-#define APSL_RAISED_MARGIN 1.2f
-
 // s_i, from gradients in any scale; a gradient of zero may get any direction. Moves 12 B corners, 2 B
 // offsets, 24 B gradients read, 2 B written, a triangle; with raised masses 16 B more read.
-APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                                __global const apsl_solve_state* states, __global const uint* corner_offsets,
-                                __global const uint* corners, __global const apsl_gradients* gradients,
-                                __global const float4* predicted, __global const float4* motion,
-                                __global float* vertex_bounds) {
+APSLK_KERNEL void bound_vertices(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                                 __global const apslk_solve_state* states, __global const uint* corner_offsets,
+                                 __global const uint* corners, __global const apslk_gradients* gradients,
+                                 __global const float4* moved, __global const float4* motion,
+                                 __global float* vertex_bounds) {
     const uint c = (uint)get_group_id(1);
-    const apsl_cloth cloth = cloths[c];
-    const apsl_range range = share_of((cloth.vertex_count + APSL_LANES - 1u) / APSL_LANES, !states[c].stopped);
-    for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
-        const uint first = block * APSL_LANES;
-        const uint count = min((uint)APSL_LANES, cloth.vertex_count - first);
-        float entries[6 * APSL_LANES] = {0.0f}, gradients_around[APSL_LANES] = {0.0f}, bounds[APSL_LANES];
+    const apslk_cloth cloth = cloths[c];
+    const apslk_range range = share_of((cloth.vertex_count + APSLK_LANES - 1u) / APSLK_LANES, !states[c].stopped);
+    for (uint block = range.first; block < range.end; block += APSLK_WORK_GROUP_SIZE) {
+        const uint first = block * APSLK_LANES;
+        const uint count = min((uint)APSLK_LANES, cloth.vertex_count - first);
+        float entries[6 * APSLK_LANES] = {0.0f}, gradients_around[APSLK_LANES] = {0.0f}, bounds[APSLK_LANES];
         for (uint v = 0; v < count; ++v) {
             const uint i = cloth.vertex_begin + first + v;
             float4 on_diagonal = (float4)(0.0f), beside = (float4)(0.0f);
@@ -68,21 +65,21 @@ APSL_KERNEL void bound_vertices(__global const apsl_cloth* cloths, __global cons
             }
             gradients_around[v] = (float)(end - begin);
             entries[v] = on_diagonal.x;
-            entries[APSL_LANES + v] = on_diagonal.y;
-            entries[2 * APSL_LANES + v] = on_diagonal.z;
-            entries[3 * APSL_LANES + v] = beside.x;
-            entries[4 * APSL_LANES + v] = beside.y;
-            entries[5 * APSL_LANES + v] = beside.z;
+            entries[APSLK_LANES + v] = on_diagonal.y;
+            entries[2 * APSLK_LANES + v] = on_diagonal.z;
+            entries[3 * APSLK_LANES + v] = beside.x;
+            entries[4 * APSLK_LANES + v] = beside.y;
+            entries[5 * APSLK_LANES + v] = beside.z;
         }
-        const apsl_symmetric sums = {private_lanes(entries, 0), private_lanes(entries, 1), private_lanes(entries, 2),
-                                     private_lanes(entries, 3), private_lanes(entries, 4), private_lanes(entries, 5)};
+        const apslk_symmetric sums = {private_lanes(entries, 0), private_lanes(entries, 1), private_lanes(entries, 2),
+                                      private_lanes(entries, 3), private_lanes(entries, 4), private_lanes(entries, 5)};
         // A direction adds 1 to the trace, a gradient of zero nothing.
         const lanes unknown = private_lanes(gradients_around, 0) - (sums.xx + sums.yy + sums.zz);
         store_private_lanes(greatest_eigenvalue(sums) + fmax(unknown, (lanes)(0.0f)), bounds);
         for (uint v = 0; v < count; ++v) {
             const uint i = cloth.vertex_begin + first + v;
-            const bool raised = parameters[c].raises_masses && predicted[i].w < motion[i].w;
-            vertex_bounds[i] = (raised ? APSL_RAISED_MARGIN : 1.0f) * bounds[v];
+            const bool raised = parameters[c].raises_masses && moved[i].w < motion[i].w;
+            vertex_bounds[i] = (raised ? APSLK_RAISED_MARGIN : 1.0f) * bounds[v];
         }
     }
 }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The vector part of a CG iteration (Chronopoulos and Gear 1989). Reference: apsl::reference::conjugate_gradient.
-#ifndef APSL_CG_STEP_H
-#define APSL_CG_STEP_H
+#ifndef APSLK_CG_STEP_H
+#define APSLK_CG_STEP_H
 
-#include "first_guess.h"
 #include "layout.h"
+#include "warm_start.h"
 #include "work_group.h"
 
 // Chronopoulos and Gear: β = γ_k / γ_{k−1}, α = γ_k / (δ_k − β γ_k / α_{k−1}). Step 0 where the matrix shows no
 // curvature above rounding along the direction (α = 1 can bring that about): the solve then stays where it is, for
 // good, since a former step of 0 makes the denominator −∞.
-APSL_INLINE float2 cg_coefficients(float residual, float curvature, float previous_residual, float previous_step,
-                                   int iteration) {
+APSLK_INLINE float2 cg_coefficients(float residual, float curvature, float previous_residual, float previous_step,
+                                    int iteration) {
     const float beta = iteration == 0 ? 0.0f : residual / previous_residual;
     const float denominator = iteration == 0 ? curvature : curvature - beta * residual / previous_step;
     const float step = residual / denominator;
@@ -20,14 +20,14 @@ APSL_INLINE float2 cg_coefficients(float residual, float curvature, float previo
 }
 
 // p = r + βp, s = q + βs, y += αp, r −= αs; this work-item's part of ‖r‖² and of r̄·r̄.
-APSL_INLINE float2 advance_cg(apsl_cloth cloth, bool active, float step, float beta, bool first_iteration,
-                              __global float4* residual, __global const float4* damped_diagonal,
-                              __global const float4* product, __global float4* direction,
-                              __global float4* direction_product, __global float4* pressure) {
+APSLK_INLINE float2 advance_cg(apslk_cloth cloth, bool active, float step, float beta, bool first_iteration,
+                               __global float4* residual, __global const float4* scaled_diagonal,
+                               __global const float4* product, __global float4* direction,
+                               __global float4* direction_product, __global float4* pressure) {
     const uint begin = cloth.triangle_begin / 4u;
-    const apsl_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
+    const apslk_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
     float4 squares = (float4)(0.0f), scaled_squares = (float4)(0.0f);
-    for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE) {
+    for (uint n = range.first; n < range.end; n += APSLK_WORK_GROUP_SIZE) {
         const uint i = begin + n;
         const float4 q = product[i];
         float4 r = residual[i], p = r, s = q, y = (float4)(0.0f);
@@ -35,14 +35,14 @@ APSL_INLINE float2 advance_cg(apsl_cloth cloth, bool active, float step, float b
             p += beta * direction[i];
             s += beta * direction_product[i];
         }
-        if (APSL_KEPT_PRESSURES > 0 || !first_iteration) y = pressure[i];
+        if (APSLK_WARM_START_SUB_STEPS > 0 || !first_iteration) y = pressure[i];
         y += step * p;
         r -= step * s;
         direction[i] = p;
         direction_product[i] = s;
         pressure[i] = y;
         residual[i] = r;
-        squares += r * r * damped_diagonal[i];
+        squares += r * r * scaled_diagonal[i];
         scaled_squares += r * r;
     }
     return (float2)(sum_of_components(squares), sum_of_components(scaled_squares));

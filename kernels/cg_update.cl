@@ -7,32 +7,32 @@
 
 // Stores a partial sum for the next iteration. A solve that has ended hands its last one on, so that both slots hold
 // it.
-APSL_INLINE void store_or_hand_on(__global float* partials, uint even_kind, uint slot, bool iterating, float sum) {
+APSLK_INLINE void store_or_hand_on(__global float* partials, uint even_kind, uint slot, bool iterating, float sum) {
     const uint groups = (uint)get_num_groups(0), group = (uint)get_group_id(0);
     const float last = partials_of(partials, even_kind + slot, groups)[group];
     partials_of(partials, even_kind + (slot ^ 1u), groups)[group] = iterating ? sum : last;
 }
 
-APSL_KERNEL void cg_update(__global const apsl_cloth* cloths, __global apsl_solve_state* states,
-                           __global float* partials, __global float4* residual, __global const float4* damped_diagonal,
-                           __global const float4* product, __global float4* direction,
-                           __global float4* direction_product, __global float4* pressure, int iteration) {
-    APSL_SCRATCH;
+APSLK_KERNEL void cg_update(__global const apslk_cloth* cloths, __global apslk_solve_state* states,
+                            __global float* partials, __global float4* residual, __global const float4* scaled_diagonal,
+                            __global const float4* product, __global float4* direction,
+                            __global float4* direction_product, __global float4* pressure, int iteration) {
+    APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const uint slot = (uint)iteration & 1u;
-    const float curvature = sum_partials(partials, APSL_PARTIAL_CURVATURE, (uint)get_num_groups(0), scratch);
+    const float curvature = sum_partials(partials, APSLK_PARTIAL_CURVATURE, (uint)get_num_groups(0), scratch);
     const float2 coefficients =
         cg_coefficients(states[c].scaled_residual[slot], curvature, states[c].scaled_residual[slot ^ 1u],
                         states[c].step[slot ^ 1u], iteration);
     const float step = coefficients.x, beta = coefficients.y;
     const bool iterating = states[c].iterating && step > 0.0f;
-    const float2 sums = advance_cg(cloths[c], iterating, step, beta, iteration == 0, residual, damped_diagonal, product,
+    const float2 sums = advance_cg(cloths[c], iterating, step, beta, iteration == 0, residual, scaled_diagonal, product,
                                    direction, direction_product, pressure);
     const float squares = group_sum(sums.x, scratch), scaled_squares = group_sum(sums.y, scratch);
 
     if (get_local_id(0) == 0) {
-        store_or_hand_on(partials, APSL_PARTIAL_RESIDUAL_EVEN, slot, iterating, squares);
-        store_or_hand_on(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, slot, iterating, scaled_squares);
+        store_or_hand_on(partials, APSLK_PARTIAL_RESIDUAL_EVEN, slot, iterating, squares);
+        store_or_hand_on(partials, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN, slot, iterating, scaled_squares);
         if (get_group_id(0) == 0 && states[c].iterating) states[c].step[slot] = step;
         if (get_group_id(0) == 0 && iterating) states[c].solve_iterations = iteration + 1;
     }

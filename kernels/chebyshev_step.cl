@@ -11,33 +11,33 @@
 
 // All cloths share `launched` launches. A cloth that needs fewer skips the first ones, so that every cloth finishes in
 // the last launch. `next` holds y_{k−1} and receives y_{k+1}.
-APSL_KERNEL void chebyshev_step(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                                __global apsl_solve_state* states, __global const uint2* patches,
-                                __global const uint* patch_vertices, __global const ushort* local_triangles,
-                                __global const uint* corner_offsets, __global const uint* corners,
-                                __global const apsl_gradients* gradients, __global const float* right_hand_side,
-                                __global const float* current, __global float* next, int sub_step, int launched,
-                                int launch) {
-    __local float4 forces[APSL_PATCH_VERTICES];
+APSLK_KERNEL void chebyshev_step(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                                 __global apslk_solve_state* states, __global const uint2* patches,
+                                 __global const uint* patch_vertices, __global const ushort* local_triangles,
+                                 __global const uint* corner_offsets, __global const uint* corners,
+                                 __global const apslk_gradients* gradients, __global const float* right_hand_side,
+                                 __global const float* current, __global float* next, int sub_step, int launched,
+                                 int launch) {
+    __local float4 forces[APSLK_PATCH_VERTICES];
     const uint c = (uint)get_group_id(1);
     const int products = min(chebyshev_products(parameters[c], sub_step), launched);
     const int k = launch - (launched - products) + 1;  // from 1 on
     const bool active = !states[c].stopped && k >= 1;
-    const apsl_chebyshev_step step = chebyshev_coefficients(products + 1, k);
+    const apslk_chebyshev_step step = chebyshev_coefficients(products + 1, k);
     __global const float* gathered = k == 1 ? right_hand_side : current;
-    const float scale = k == 1 ? step.first : 1.0f, product_scale = scale * APSL_GRADIENT_UNIT;
+    const float scale = k == 1 ? step.first : 1.0f, product_scale = scale * APSLK_GRADIENT_UNIT;
     // y₀ = 0 and y₁ come from the right-hand side, so that what a former solve left in `next` is never read.
     __global const float* before = k <= 2 ? right_hand_side : next;
     const float before_scale = k == 1 ? 0.0f : k == 2 ? step.first : 1.0f;
 
-    const apsl_patch_range range = patches_of(cloths[c], active);
+    const apslk_patch_range range = patches_of(cloths[c], active);
     for (uint patch = range.begin; patch < range.end; ++patch) {
         const uint2 first = patches[patch], last = patches[patch + 1];
         gather_forces(first.y, last.y, patch_vertices, corner_offsets, corners, gradients, gathered, forces);
         group_barrier();
-        for (uint a = first.x + (uint)get_local_id(0); a < last.x; a += APSL_WORK_GROUP_SIZE) {
-            APSL_PREFETCH(gradients + a + APSL_PREFETCH_TRIANGLES);
-            APSL_PREFETCH(gathered + a + APSL_PREFETCH_TRIANGLES);
+        for (uint a = first.x + (uint)get_local_id(0); a < last.x; a += APSLK_WORK_GROUP_SIZE) {
+            APSLK_PREFETCH(gradients + a + APSLK_PREFETCH_TRIANGLES);
+            APSLK_PREFETCH(gathered + a + APSLK_PREFETCH_TRIANGLES);
             const float b = right_hand_side[a];
             const float y = scale * gathered[a];
             const float q = product_scale * apply_to_forces(a, local_triangles, gradients, forces);

@@ -5,17 +5,17 @@
 #include "layout.h"
 #include "work_group.h"
 
-APSL_KERNEL void csr_spmv_dot(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                              __global apsl_solve_state* states, __global float* partials,
-                              __global const uint* row_offsets, __global const uint* columns,
-                              __global const float* values, __global const float* residual, __global float* product,
-                              int iteration) {
-    APSL_SCRATCH;
-    const apsl_cloth cloth = cloths[get_group_id(1)];
+APSLK_KERNEL void csr_spmv_dot(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                               __global apslk_solve_state* states, __global float* partials,
+                               __global const uint* row_offsets, __global const uint* columns,
+                               __global const float* values, __global const float* residual, __global float* product,
+                               int iteration) {
+    APSLK_SCRATCH;
+    const apslk_cloth cloth = cloths[get_group_id(1)];
     const bool iterating = begin_iteration(parameters, states, partials, iteration, scratch);
-    const apsl_range range = share_of(cloth.triangle_count, iterating);
+    const apslk_range range = share_of(cloth.triangle_count, iterating);
     float curvature = 0.0f;
-    for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
+    for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
         const uint end = row_offsets[a + 1];
         float q = 0.0f;
@@ -23,5 +23,5 @@ APSL_KERNEL void csr_spmv_dot(__global const apsl_cloth* cloths, __global const 
         product[a] = q;
         curvature += residual[a] * q;
     }
-    store_partial(partials, APSL_PARTIAL_CURVATURE, group_sum(curvature, scratch));
+    store_partial(partials, APSLK_PARTIAL_CURVATURE, group_sum(curvature, scratch));
 }

@@ -7,33 +7,33 @@
 #include "work_group.h"
 
 // `iterations`, even, have been queued before, by launches of `groups` work-groups.
-APSL_KERNEL void finish_solve(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                              __global apsl_solve_state* states, __global float* partials,
-                              __global const uint2* patches, __global const uint* patch_vertices,
-                              __global const ushort* local_triangles, __global const uint* corner_offsets,
-                              __global const uint* corners, __global const apsl_gradients* gradients,
-                              __global float* residual, __global const float* damped_diagonal, __global float* product,
-                              __global float* direction, __global float* direction_product, __global float* pressure,
-                              uint groups, int iterations) {
-    APSL_SCRATCH;
-    __local float4 forces[APSL_PATCH_VERTICES];
+APSLK_KERNEL void finish_solve(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                               __global apslk_solve_state* states, __global float* partials,
+                               __global const uint2* patches, __global const uint* patch_vertices,
+                               __global const ushort* local_triangles, __global const uint* corner_offsets,
+                               __global const uint* corners, __global const apslk_gradients* gradients,
+                               __global float* residual, __global const float* scaled_diagonal, __global float* product,
+                               __global float* direction, __global float* direction_product, __global float* pressure,
+                               uint groups, int iterations) {
+    APSLK_SCRATCH;
+    __local float4 forces[APSLK_PATCH_VERTICES];
     const uint c = (uint)get_group_id(1);
     // A solve that stopped early, for whatever reason, is not taken up again.
     const bool unfinished = !states[c].stopped && states[c].solve_iterations == iterations;
-    apsl_solve solve;
+    apslk_solve solve;
     solve.iterations = states[c].solve_iterations;
     solve.initial_residual = states[c].initial_residual;
-    solve.residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN, groups, scratch);
-    solve.scaled_residual = sum_partials(partials, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, groups, scratch);
+    solve.residual = sum_partials(partials, APSLK_PARTIAL_RESIDUAL_EVEN, groups, scratch);
+    solve.scaled_residual = sum_partials(partials, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN, groups, scratch);
     solve.previous_scaled_residual = states[c].scaled_residual[1];
     solve.previous_step = states[c].step[1];
     group_memory_barrier();  // all have read the state
     if (unfinished) {        // uniform: the same for all work-items of the group
         iterate_in_group(&solve, false, parameters + c, cloths + c, patches, patch_vertices, local_triangles,
-                         corner_offsets, corners, gradients, residual, damped_diagonal, product, direction,
+                         corner_offsets, corners, gradients, residual, scaled_diagonal, product, direction,
                          direction_product, pressure, forces, scratch);
-        for (uint g = (uint)get_local_id(0); g < groups; g += APSL_WORK_GROUP_SIZE)
-            partials_of(partials, APSL_PARTIAL_RESIDUAL_EVEN, groups)[g] = g == 0 ? solve.residual : 0.0f;
+        for (uint g = (uint)get_local_id(0); g < groups; g += APSLK_WORK_GROUP_SIZE)
+            partials_of(partials, APSLK_PARTIAL_RESIDUAL_EVEN, groups)[g] = g == 0 ? solve.residual : 0.0f;
         if (get_local_id(0) == 0) states[c].solve_iterations = solve.iterations;
     }
 }

@@ -1,53 +1,53 @@
 // SPDX-License-Identifier: MIT
 // Eq. (6) with λ = p Δt²: x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, on to the next of small steps, and how the solve ended.
 // Reference: apsl::reference, displacements, effective_masses and strain_limiter. Moves 12 B corners, 2 B offsets, 24 B
-// gradients, 4 B pressure, 16 B position read and written, a triangle; in a walk 32 B and the 4 B of `stiffening`
+// gradients, 4 B pressure, 16 B position read and written, a triangle; in small steps 32 B and the 4 B of `stiffening`
 // more.
-#include "first_guess.h"
 #include "layout.h"
 #include "regularization.h"
 #include "vertex_motion.h"
+#include "warm_start.h"
 #include "work_group.h"
 
-#ifndef APSL_CHEBYSHEV
-#define APSL_CHEBYSHEV 0
+#ifndef APSLK_CHEBYSHEV
+#define APSLK_CHEBYSHEV 0
 #endif
 
-APSL_KERNEL void gather_displacements(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                                      __global apsl_solve_state* states, __global apsl_stats* stats,
-                                      __global float* partials, __global const uint* corner_offsets,
-                                      __global const uint* corners, __global const apsl_gradients* gradients,
-                                      __global const float* pressure, __global float4* predicted,
-                                      __global float4* motion, __global float4* correction, int sub_step, uint slot) {
-    APSL_SCRATCH;
+APSLK_KERNEL void gather_displacements(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                                       __global apslk_solve_state* states, __global apslk_stats* stats,
+                                       __global float* partials, __global const uint* corner_offsets,
+                                       __global const uint* corners, __global const apslk_gradients* gradients,
+                                       __global const float* pressure, __global float4* moved, __global float4* motion,
+                                       __global float4* total_correction, int sub_step, uint slot) {
+    APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const float initial = states[c].initial_residual;
     // A right-hand side of zero does no iteration, and then, unless a guess was scaled by 0, no pressure is there to
     // read.
-    const bool solved = APSL_KEPT_PRESSURES > 0 || states[c].solve_iterations > 0;
-    const bool walking = walked_sub_steps(parameters[c]) > 0;
-    displace_vertices(cloths[c], !walking && !states[c].stopped && solved, corner_offsets, corners, gradients, pressure,
-                      predicted);
+    const bool solved = APSLK_WARM_START_SUB_STEPS > 0 || states[c].solve_iterations > 0;
+    const bool in_small_steps = small_step_count(parameters[c]) > 0;
+    displace_vertices(cloths[c], !in_small_steps && !states[c].stopped && solved, corner_offsets, corners, gradients,
+                      pressure, moved);
     const bool raises_masses = parameters[c].raises_masses != 0;
-    const apsl_walk walk = {sub_step,
-                            walked_sub_steps(parameters[c]),
-                            solved,
-                            raises_masses && sub_step + 1 < parameters[c].sub_steps,
-                            states[c].greatest_mass,
-                            raises_masses ? APSL_HELD_TENSION : INFINITY};
-    walk_vertices(cloths[c], walking && !states[c].stopped, walk, corner_offsets, corners, gradients, pressure,
-                  predicted, motion, correction);
-    const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
+    const apslk_small_step small_step = {sub_step,
+                                         small_step_count(parameters[c]),
+                                         solved,
+                                         raises_masses && sub_step + 1 < parameters[c].sub_steps,
+                                         states[c].greatest_mass,
+                                         raises_masses ? APSLK_HELD_TENSION : INFINITY};
+    advance_vertices(cloths[c], in_small_steps && !states[c].stopped, small_step, corner_offsets, corners, gradients,
+                     pressure, moved, motion, total_correction);
+    const float residual = sum_partials(partials, APSLK_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     if (get_group_id(0) == 0 && get_local_id(0) == 0 && !states[c].stopped) {
         // A polynomial is as long as it is, and nothing measures what it leaves.
-        const bool measured = !APSL_CHEBYSHEV;
+        const bool measured = !APSLK_CHEBYSHEV;
         const bool converged = !measured || residual <= parameters[c].tolerance_squared * initial;
         states[c].adaptive_factor =
             adapted_factor(states[c].adaptive_factor, parameters[c], states[c].solve_iterations, converged);
         // The product with a guess costs as much as an iteration.
-        stats[c].cg_iterations += states[c].solve_iterations + (APSL_KEPT_PRESSURES > 0 ? 1 : 0);
+        stats[c].iterations += states[c].solve_iterations + (APSLK_WARM_START_SUB_STEPS > 0 ? 1 : 0);
         if (measured && initial > 0.0f)
             stats[c].residual = fmax(stats[c].residual, relative_residual(residual, initial));
-        if (!converged && stats[c].status == APSL_STATUS_OK) stats[c].status = APSL_STATUS_NOT_CONVERGED;
+        if (!converged && stats[c].status == APSLK_STATUS_OK) stats[c].status = APSLK_STATUS_NOT_CONVERGED;
     }
 }

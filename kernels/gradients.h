@@ -6,8 +6,8 @@
 // ones, and plain CG on it is Jacobi-preconditioned CG on G.
 //
 // Σ_k |ḡ_k|² = 1/α ≤ 1, whatever the units of the scene, so that 16-bit fixed point holds a component to 1.5e-5.
-#ifndef APSL_GRADIENTS_H
-#define APSL_GRADIENTS_H
+#ifndef APSLK_GRADIENTS_H
+#define APSLK_GRADIENTS_H
 
 #include "layout.h"
 
@@ -16,17 +16,17 @@
 typedef struct {
     short4 corner_0, corner_1, corner_2;  // w is zero
     float shift;                          // (α − 1)/α
-    float stiffening;                     // √(α D) / A, m⁻¹ kg^(−1/2): see apsl_corner_sums
-} apsl_gradients;
+    float stiffening;                     // √(α D) / A, m⁻¹ kg^(−1/2): see apslk_corner_sums
+} apslk_gradients;
 
-#define APSL_GRADIENT_UNIT (1.0f / 32767.0f)
+#define APSLK_GRADIENT_UNIT (1.0f / 32767.0f)
 
-// In units of APSL_GRADIENT_UNIT; w is zero.
-APSL_INLINE float4 corner_gradient(__global const apsl_gradients* gradients, uint corner) {
+// In units of APSLK_GRADIENT_UNIT; w is zero.
+APSLK_INLINE float4 corner_gradient(__global const apslk_gradients* gradients, uint corner) {
     return convert_float4(((__global const short4*)gradients)[corner]);
 }
 
-APSL_INLINE float dot3(float4 a, float4 b) {
+APSLK_INLINE float dot3(float4 a, float4 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 

@@ -2,17 +2,17 @@
 // Arithmetic on several triangles at once. One work-item a group (a CPU) takes eight, so that geometry fills its vector
 // registers; otherwise each work-item takes one, and the hardware does the rest. The formulas are written once, on
 // `lanes`, which is float8 or float.
-#ifndef APSL_LANES_H
-#define APSL_LANES_H
+#ifndef APSLK_LANES_H
+#define APSLK_LANES_H
 
 #include "work_group.h"
 
-#if APSL_WORK_GROUP_SIZE == 1
-#define APSL_LANES 8
+#if APSLK_WORK_GROUP_SIZE == 1
+#define APSLK_LANES 8
 typedef float8 lanes;
 typedef int8 lanes_int;
 #else
-#define APSL_LANES 1
+#define APSLK_LANES 1
 typedef float lanes;
 typedef int lanes_int;
 #endif
@@ -21,11 +21,11 @@ typedef struct {
     lanes x, y, z, w;
 } lanes4;
 
-#if APSL_LANES == 8
+#if APSLK_LANES == 8
 
 // values[index[0]], …, the vertices at corner `corner` of eight triangles: eight 16-byte loads and a transposition.
-APSL_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global const float4* values, uint first,
-                                        uint corner) {
+APSLK_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global const float4* values, uint first,
+                                         uint corner) {
     __global const uint* index = triangles + 3u * first + corner;
     const float8 a = (float8)(values[index[0]], values[index[12]]), b = (float8)(values[index[3]], values[index[15]]);
     const float8 c = (float8)(values[index[6]], values[index[18]]), d = (float8)(values[index[9]], values[index[21]]);
@@ -42,44 +42,44 @@ APSL_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global
 }
 
 // One value of each vertex in place of four.
-APSL_INLINE lanes load_corner_values(__global const uint* triangles, __global const float* values, uint first,
-                                     uint corner) {
+APSLK_INLINE lanes load_corner_values(__global const uint* triangles, __global const float* values, uint first,
+                                      uint corner) {
     __global const uint* index = triangles + 3u * first + corner;
     return (float8)(values[index[0]], values[index[3]], values[index[6]], values[index[9]], values[index[12]],
                     values[index[15]], values[index[18]], values[index[21]]);
 }
 
-APSL_INLINE lanes load_lanes(__global const float* values, uint first) {
+APSLK_INLINE lanes load_lanes(__global const float* values, uint first) {
     return vload8(0, values + first);
 }
 
-APSL_INLINE void store_lanes(lanes value, __global float* values, uint first) {
+APSLK_INLINE void store_lanes(lanes value, __global float* values, uint first) {
     vstore8(value, 0, values + first);
 }
 
 // The lanes at place `n` of an array of this work-item.
-APSL_INLINE lanes private_lanes(const float* values, uint n) {
+APSLK_INLINE lanes private_lanes(const float* values, uint n) {
     return vload8(n, values);
 }
 
-APSL_INLINE void store_private_lanes(lanes value, float* values) {
+APSLK_INLINE void store_private_lanes(lanes value, float* values) {
     vstore8(value, 0, values);
 }
 
-APSL_INLINE float sum_of_lanes(lanes v) {
+APSLK_INLINE float sum_of_lanes(lanes v) {
     const float4 a = v.lo + v.hi;
     const float2 b = a.lo + a.hi;
     return b.x + b.y;
 }
 
-APSL_INLINE float max_of_lanes(lanes v) {
+APSLK_INLINE float max_of_lanes(lanes v) {
     const float4 a = fmax(v.lo, v.hi);
     const float2 b = fmax(a.lo, a.hi);
     return fmax(b.x, b.y);
 }
 
 // Eight words for each of eight triangles, word by word, to 32 bytes a triangle.
-APSL_INLINE void store_records(const lanes_int words[8], __global int4* records, uint first) {
+APSLK_INLINE void store_records(const lanes_int words[8], __global int4* records, uint first) {
     __global int4* out = records + 2u * first;
     for (uint half_record = 0; half_record < 2; ++half_record) {
         const int8 a = words[4 * half_record], b = words[4 * half_record + 1];
@@ -99,18 +99,18 @@ APSL_INLINE void store_records(const lanes_int words[8], __global int4* records,
     }
 }
 
-APSL_INLINE lanes_int to_int(lanes v) {
+APSLK_INLINE lanes_int to_int(lanes v) {
     return convert_int8(v);
 }
 
-APSL_INLINE lanes_int bits_of(lanes v) {
+APSLK_INLINE lanes_int bits_of(lanes v) {
     return as_int8(v);
 }
 
 #else
 
-APSL_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global const float4* values, uint first,
-                                        uint corner) {
+APSLK_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global const float4* values, uint first,
+                                         uint corner) {
     const float4 value = values[triangles[3u * first + corner]];
     lanes4 v;
     v.x = value.x;
@@ -120,51 +120,51 @@ APSL_INLINE lanes4 load_corner_vertices(__global const uint* triangles, __global
     return v;
 }
 
-APSL_INLINE lanes load_corner_values(__global const uint* triangles, __global const float* values, uint first,
-                                     uint corner) {
+APSLK_INLINE lanes load_corner_values(__global const uint* triangles, __global const float* values, uint first,
+                                      uint corner) {
     return values[triangles[3u * first + corner]];
 }
 
-APSL_INLINE lanes load_lanes(__global const float* values, uint first) {
+APSLK_INLINE lanes load_lanes(__global const float* values, uint first) {
     return values[first];
 }
 
-APSL_INLINE void store_lanes(lanes value, __global float* values, uint first) {
+APSLK_INLINE void store_lanes(lanes value, __global float* values, uint first) {
     values[first] = value;
 }
 
-APSL_INLINE lanes private_lanes(const float* values, uint n) {
+APSLK_INLINE lanes private_lanes(const float* values, uint n) {
     return values[n];
 }
 
-APSL_INLINE void store_private_lanes(lanes value, float* values) {
+APSLK_INLINE void store_private_lanes(lanes value, float* values) {
     values[0] = value;
 }
 
-APSL_INLINE float sum_of_lanes(lanes v) {
+APSLK_INLINE float sum_of_lanes(lanes v) {
     return v;
 }
 
-APSL_INLINE float max_of_lanes(lanes v) {
+APSLK_INLINE float max_of_lanes(lanes v) {
     return v;
 }
 
-APSL_INLINE void store_records(const lanes_int words[8], __global int4* records, uint first) {
+APSLK_INLINE void store_records(const lanes_int words[8], __global int4* records, uint first) {
     records[2u * first] = (int4)(words[0], words[1], words[2], words[3]);
     records[2u * first + 1] = (int4)(words[4], words[5], words[6], words[7]);
 }
 
-APSL_INLINE lanes_int to_int(lanes v) {
+APSLK_INLINE lanes_int to_int(lanes v) {
     return (int)v;
 }
 
-APSL_INLINE lanes_int bits_of(lanes v) {
+APSLK_INLINE lanes_int bits_of(lanes v) {
     return as_int(v);
 }
 
 #endif
 
-APSL_INLINE lanes4 minus(lanes4 a, lanes4 b) {
+APSLK_INLINE lanes4 minus(lanes4 a, lanes4 b) {
     lanes4 c;
     c.x = a.x - b.x;
     c.y = a.y - b.y;
@@ -173,7 +173,7 @@ APSL_INLINE lanes4 minus(lanes4 a, lanes4 b) {
     return c;
 }
 
-APSL_INLINE lanes4 cross_product(lanes4 a, lanes4 b) {
+APSLK_INLINE lanes4 cross_product(lanes4 a, lanes4 b) {
     lanes4 c;
     c.x = a.y * b.z - a.z * b.y;
     c.y = a.z * b.x - a.x * b.z;
@@ -182,7 +182,7 @@ APSL_INLINE lanes4 cross_product(lanes4 a, lanes4 b) {
     return c;
 }
 
-APSL_INLINE lanes squared_length(lanes4 a) {
+APSLK_INLINE lanes squared_length(lanes4 a) {
     return a.x * a.x + a.y * a.y + a.z * a.z;
 }
 

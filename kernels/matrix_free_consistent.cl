@@ -8,17 +8,17 @@
 #include "patch_product.h"
 #include "work_group.h"
 
-APSL_KERNEL void matrix_free_apply_dot(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                                       __global apsl_solve_state* states, __global float* partials,
-                                       __global const uint2* patches, __global const uint* patch_vertices,
-                                       __global const ushort* local_triangles, __global const uint* corner_offsets,
-                                       __global const uint* corners, __global const apsl_gradients* gradients,
-                                       __global const float* residual, __global float* product, int iteration) {
-    APSL_SCRATCH;
-    __local float4 forces[APSL_PATCH_VERTICES];
+APSLK_KERNEL void matrix_free_apply_dot(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                                        __global apslk_solve_state* states, __global float* partials,
+                                        __global const uint2* patches, __global const uint* patch_vertices,
+                                        __global const ushort* local_triangles, __global const uint* corner_offsets,
+                                        __global const uint* corners, __global const apslk_gradients* gradients,
+                                        __global const float* residual, __global float* product, int iteration) {
+    APSLK_SCRATCH;
+    __local float4 forces[APSLK_PATCH_VERTICES];
     const bool iterating = begin_iteration(parameters, states, partials, iteration, scratch);
     const float curvature =
         multiply_patches(cloths[get_group_id(1)], iterating, patches, patch_vertices, local_triangles, corner_offsets,
                          corners, gradients, residual, product, forces);
-    store_partial(partials, APSL_PARTIAL_CURVATURE, group_sum(curvature, scratch));
+    store_partial(partials, APSLK_PARTIAL_CURVATURE, group_sum(curvature, scratch));
 }

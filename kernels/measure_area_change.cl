@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Area change at the predicted positions. Reference: apsl::reference, area change.
+// Area change at the moved positions. Reference: apsl::reference, area change.
 #include "effective_mass.h"
 #include "layout.h"
 #include "triangle_assembly.h"
@@ -7,29 +7,29 @@
 
 // What a call leaves behind, and the vertices that weighed more than given.
 // Moves 12 B indices, about 8 B positions, 4 B rest area read a triangle; with raised masses 32 B a vertex.
-APSL_KERNEL void measure_area_change(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                                     __global float* partials, __global const uint* triangles,
-                                     __global const float4* predicted, __global const float4* motion,
-                                     __global const float* rest_areas) {
-    APSL_SCRATCH;
+APSLK_KERNEL void measure_area_change(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                                      __global float* partials, __global const uint* triangles,
+                                      __global const float4* moved, __global const float4* motion,
+                                      __global const float* rest_areas) {
+    APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    store_area_partials(measure_triangles(cloths[c], parameters[c].enabled, triangles, predicted, rest_areas), partials,
+    store_area_partials(measure_triangles(cloths[c], parameters[c].enabled, triangles, moved, rest_areas), partials,
                         scratch);
-    const apsl_raised_masses raised = raised_masses(cloths[c], parameters[c].raises_masses, predicted, motion);
-    store_partial(partials, APSL_PARTIAL_RAISED, group_sum(raised.count, scratch));
-    store_partial(partials, APSL_PARTIAL_MASS_RATIO, group_max(raised.greatest_ratio, scratch));
+    const apslk_raised_masses raised = raised_masses(cloths[c], parameters[c].raises_masses, moved, motion);
+    store_partial(partials, APSLK_PARTIAL_RAISED, group_sum(raised.count, scratch));
+    store_partial(partials, APSLK_PARTIAL_MASS_RATIO, group_max(raised.greatest_ratio, scratch));
 }
 
-// Before a walk: what the whole step comes to, and what the areas are off by at its start, whose vertices are in
+// Before small steps: what the whole step comes to, and what the areas are off by at its start, whose vertices are in
 // `motion`. Moves 12 B indices, about 16 B positions, 4 B rest area read, 4 B written a triangle.
-APSL_KERNEL void measure_step(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                              __global float* partials, __global const uint* triangles,
-                              __global const float4* predicted, __global const float4* motion,
-                              __global const float* rest_areas, __global float* start_errors) {
-    APSL_SCRATCH;
+APSLK_KERNEL void measure_step(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                               __global float* partials, __global const uint* triangles, __global const float4* moved,
+                               __global const float4* motion, __global const float* rest_areas,
+                               __global float* start_errors) {
+    APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const bool walking = walked_sub_steps(parameters[c]) > 0;
-    apsl_area_sums sums = measure_triangles(cloths[c], parameters[c].enabled, triangles, predicted, rest_areas);
-    sums.not_finite += find_start_errors(cloths[c], walking, triangles, motion, rest_areas, start_errors);
+    const bool in_small_steps = small_step_count(parameters[c]) > 0;
+    apslk_area_sums sums = measure_triangles(cloths[c], parameters[c].enabled, triangles, moved, rest_areas);
+    sums.not_finite += find_start_errors(cloths[c], in_small_steps, triangles, motion, rest_areas, start_errors);
     store_area_partials(sums, partials, scratch);
 }

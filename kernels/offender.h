@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Names what broke a call, or the triangle that it left worse: the first of the cloth, in the caller's order. Read only
 // when there is one. Reference: apsl::reference, strain_limiter.
-#ifndef APSL_OFFENDER_H
-#define APSL_OFFENDER_H
+#ifndef APSLK_OFFENDER_H
+#define APSLK_OFFENDER_H
 
 #include "area_sums.h"
 #include "layout.h"
@@ -10,10 +10,10 @@
 #include "vertex_motion.h"
 #include "work_group.h"
 
-#define APSL_NOBODY 0xffffffffu
+#define APSLK_NOBODY 0xffffffffu
 
 // Least over the work-group. Two halves, since scratch holds floats and those are exact below 2²⁴.
-APSL_INLINE uint group_min(uint value, __local float* scratch) {
+APSLK_INLINE uint group_min(uint value, __local float* scratch) {
     const float high = -group_max(-(float)(value >> 16), scratch);
     const float low = (value >> 16) == (uint)high ? (float)(value & 0xffffu) : 65535.0f;
     return ((uint)high << 16) | (uint)-group_max(-low, scratch);
@@ -24,11 +24,11 @@ typedef struct {
     bool bad_vertices, bad_triangles;
     bool worst_triangle;    // the one whose area change is the greatest
     float greatest_change;  // which is this
-} apsl_offender_search;
+} apslk_offender_search;
 
-APSL_INLINE apsl_offender_search search_for(bool broken, bool bad_vertices, apsl_verdict verdict,
-                                            float greatest_change) {
-    apsl_offender_search search;
+APSLK_INLINE apslk_offender_search search_for(bool broken, bool bad_vertices, apslk_verdict verdict,
+                                              float greatest_change) {
+    apslk_offender_search search;
     search.bad_vertices = broken && bad_vertices;
     search.bad_triangles = broken && !bad_vertices;
     search.worst_triangle = !broken && verdict.names;
@@ -37,24 +37,24 @@ APSL_INLINE apsl_offender_search search_for(bool broken, bool bad_vertices, apsl
 }
 
 // The first vertex or triangle found in this work-item's share. `rest_areas` are in the limiter's order.
-APSL_INLINE uint first_offender(apsl_offender_search search, apsl_cloth cloth, __global const uint* vertex_order,
-                                __global const uint* triangle_order, __global const uint* triangles,
-                                __global const float4* predicted, __global const float* rest_areas) {
-    uint first = APSL_NOBODY;
+APSLK_INLINE uint first_offender(apslk_offender_search search, apslk_cloth cloth, __global const uint* vertex_order,
+                                 __global const uint* triangle_order, __global const uint* triangles,
+                                 __global const float4* moved, __global const float* rest_areas) {
+    uint first = APSLK_NOBODY;
     const uint vertices = search.bad_vertices ? cloth.vertex_count : 0u;
-    for (uint v = (uint)get_local_id(0); v < vertices; v += APSL_WORK_GROUP_SIZE) {
+    for (uint v = (uint)get_local_id(0); v < vertices; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v;
-        if (is_bad_vertex(predicted[place])) first = min(first, vertex_order[place] - cloth.vertex_begin);
+        if (is_bad_vertex(moved[place])) first = min(first, vertex_order[place] - cloth.vertex_begin);
     }
     // Another kernel found the greatest change, and may have rounded it otherwise.
     const float least_change = search.worst_triangle ? search.greatest_change * (1.0f - 1e-5f) : INFINITY;
     const uint blocks = search.bad_triangles || search.worst_triangle ? blocks_of(cloth) : 0u;
-    for (uint block = (uint)get_local_id(0); block < blocks; block += APSL_WORK_GROUP_SIZE) {
-        const uint a = cloth.triangle_begin + block * APSL_LANES;
-        const apsl_triangle_geometry triangle = load_triangles(triangles, predicted, a);
+    for (uint block = (uint)get_local_id(0); block < blocks; block += APSLK_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + block * APSLK_LANES;
+        const apslk_triangle_geometry triangle = load_triangles(triangles, moved, a);
         const lanes rest_area = load_lanes(rest_areas, a);
         const lanes witness = area_witness(triangle, rest_area), change = relative_change(triangle, rest_area);
-        const uint count = min((uint)APSL_LANES, cloth.triangle_count - block * APSL_LANES);
+        const uint count = min((uint)APSLK_LANES, cloth.triangle_count - block * APSLK_LANES);
         for (uint n = 0; n < count; ++n) {
             const bool bad = search.bad_triangles && !(fabs(((const float*)&witness)[n]) < INFINITY);
             if (bad || ((const float*)&change)[n] >= least_change)
@@ -65,17 +65,17 @@ APSL_INLINE uint first_offender(apsl_offender_search search, apsl_cloth cloth, _
 }
 
 // By all of a work-group, whatever is looked for: there are barriers inside.
-APSL_INLINE void name_offender(__global apsl_stats* stats, apsl_offender_search search, apsl_cloth cloth,
-                               __global const uint* vertex_order, __global const uint* triangle_order,
-                               __global const uint* triangles, __global const float4* predicted,
-                               __global const float* rest_areas, __local float* scratch) {
-    const uint first = group_min(
-        first_offender(search, cloth, vertex_order, triangle_order, triangles, predicted, rest_areas), scratch);
+APSLK_INLINE void name_offender(__global apslk_stats* stats, apslk_offender_search search, apslk_cloth cloth,
+                                __global const uint* vertex_order, __global const uint* triangle_order,
+                                __global const uint* triangles, __global const float4* moved,
+                                __global const float* rest_areas, __local float* scratch) {
+    const uint first =
+        group_min(first_offender(search, cloth, vertex_order, triangle_order, triangles, moved, rest_areas), scratch);
     if (get_local_id(0) == 0) {
-        const bool named = first != APSL_NOBODY;
-        stats->offender = !named                ? APSL_OFFENDER_NONE
-                          : search.bad_vertices ? APSL_OFFENDER_VERTEX
-                                                : APSL_OFFENDER_TRIANGLE;
+        const bool named = first != APSLK_NOBODY;
+        stats->offender = !named                ? APSLK_OFFENDER_NONE
+                          : search.bad_vertices ? APSLK_OFFENDER_VERTEX
+                                                : APSLK_OFFENDER_TRIANGLE;
         stats->offender_index = named ? first : 0u;
     }
 }

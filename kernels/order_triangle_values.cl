@@ -5,12 +5,12 @@
 #include "triangle_assembly.h"
 #include "work_group.h"
 
-APSL_KERNEL void order_triangle_values(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                                       __global const uint* triangle_order, __global float* ordered_rest_areas,
-                                       __global float* ordered_regularization, __global const float* rest_areas,
-                                       ulong rest_area_offset, __global const float* regularization,
-                                       ulong regularization_offset) {
+APSLK_KERNEL void order_triangle_values(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                                        __global const uint* triangle_order, __global float* ordered_rest_areas,
+                                        __global float* ordered_scaling, __global const float* rest_areas,
+                                        ulong rest_area_offset, __global const float* regularization,
+                                        ulong regularization_offset) {
     const uint c = (uint)get_group_id(1);
-    order_values(cloths[c], parameters[c].enabled, triangle_order, ordered_rest_areas, ordered_regularization,
+    order_values(cloths[c], parameters[c].enabled, triangle_order, ordered_rest_areas, ordered_scaling,
                  rest_areas + rest_area_offset, regularization + regularization_offset);
 }

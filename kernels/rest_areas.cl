@@ -5,17 +5,17 @@
 #include "vertex_motion.h"
 #include "work_group.h"
 
-APSL_INLINE float3 rest_position(__global const uint* vertex_order, __global const float* rest_positions, uint place) {
+APSLK_INLINE float3 rest_position(__global const uint* vertex_order, __global const float* rest_positions, uint place) {
     return load_position(rest_positions, vertex_order[place]);
 }
 
-APSL_KERNEL void rest_areas(__global const apsl_cloth* cloths, __global const uint* vertex_order,
-                            __global const uint* triangle_order, __global const uint* triangles,
-                            __global const float* rest_positions, ulong rest_position_offset, __global float* areas,
-                            ulong area_offset) {
-    const apsl_cloth cloth = cloths[get_group_id(1)];
-    const apsl_range range = share_of(cloth.triangle_count, true);
-    for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
+APSLK_KERNEL void rest_areas(__global const apslk_cloth* cloths, __global const uint* vertex_order,
+                             __global const uint* triangle_order, __global const uint* triangles,
+                             __global const float* rest_positions, ulong rest_position_offset, __global float* areas,
+                             ulong area_offset) {
+    const apslk_cloth cloth = cloths[get_group_id(1)];
+    const apslk_range range = share_of(cloth.triangle_count, true);
+    for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
         const float3 x0 = rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a]);
         const float3 x1 = rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a + 1]);

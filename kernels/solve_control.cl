@@ -7,46 +7,46 @@
 #include "work_group.h"
 
 // Area change over all triangles from the groups' partial results.
-APSL_INLINE apsl_area_change area_change(__global float* partials, uint groups, __local float* scratch) {
-    const float greatest = max_partials(partials, APSL_PARTIAL_MAX_CHANGE, groups, scratch);
-    const float squared = sum_partials(partials, APSL_PARTIAL_SQUARED_CHANGE, groups, scratch);
-    const float capped = sum_partials(partials, APSL_PARTIAL_CAPPED_CHANGE, groups, scratch);
-    const float measured = sum_partials(partials, APSL_PARTIAL_MEASURED, groups, scratch);
+APSLK_INLINE apslk_area_change area_change(__global float* partials, uint groups, __local float* scratch) {
+    const float greatest = max_partials(partials, APSLK_PARTIAL_MAX_CHANGE, groups, scratch);
+    const float squared = sum_partials(partials, APSLK_PARTIAL_SQUARED_CHANGE, groups, scratch);
+    const float capped = sum_partials(partials, APSLK_PARTIAL_CAPPED_CHANGE, groups, scratch);
+    const float measured = sum_partials(partials, APSLK_PARTIAL_MEASURED, groups, scratch);
     return area_change_of(greatest, squared, capped, measured);
 }
 
-// Before a walk: the area change that the whole step would have, whether there is anything to do about it, and the
+// Before small steps: the area change that the whole step would have, whether there is anything to do about it, and the
 // greatest effective mass.
-APSL_KERNEL void judge_whole_step(__global const apsl_parameters* parameters, __global apsl_solve_state* states,
-                                  __global apsl_stats* stats, __global float* partials, uint groups) {
-    APSL_SCRATCH;
+APSLK_KERNEL void judge_whole_step(__global const apslk_parameters* parameters, __global apslk_solve_state* states,
+                                   __global apslk_stats* stats, __global float* partials, uint groups) {
+    APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const apsl_area_change change = area_change(partials, groups, scratch);
-    const float not_finite = sum_partials(partials, APSL_PARTIAL_NOT_FINITE, groups, scratch);
-    const float log_masses = sum_partials(partials, APSL_PARTIAL_LOG_MASSES, groups, scratch);
-    const float movable = sum_partials(partials, APSL_PARTIAL_MOVABLE, groups, scratch);
-    if (get_local_id(0) != 0 || parameters[c].walked == 0) return;
+    const apslk_area_change change = area_change(partials, groups, scratch);
+    const float not_finite = sum_partials(partials, APSLK_PARTIAL_NOT_FINITE, groups, scratch);
+    const float log_masses = sum_partials(partials, APSLK_PARTIAL_LOG_MASSES, groups, scratch);
+    const float movable = sum_partials(partials, APSLK_PARTIAL_MOVABLE, groups, scratch);
+    if (get_local_id(0) != 0 || parameters[c].small_steps == 0) return;
     states[c].greatest_mass = greatest_effective_mass(log_masses, movable);
     store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
-    if (not_finite > 0.0f) stats[c].status = APSL_STATUS_DIVERGED;
+    if (not_finite > 0.0f) stats[c].status = APSLK_STATUS_DIVERGED;
     if (not_finite > 0.0f || change.max <= parameters[c].target_area_change) states[c].stopped = 1;
 }
 
 // Algorithm 1, line 2: a sub-step is done unless the areas are at the target or something is not finite.
-APSL_KERNEL void begin_solve(__global const apsl_parameters* parameters, __global apsl_solve_state* states,
-                             __global apsl_stats* stats, __global float* partials, uint groups, int sub_step) {
-    APSL_SCRATCH;
+APSLK_KERNEL void begin_solve(__global const apslk_parameters* parameters, __global apslk_solve_state* states,
+                              __global apslk_stats* stats, __global float* partials, uint groups, int sub_step) {
+    APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const apsl_area_change change = area_change(partials, groups, scratch);
-    const float not_finite = sum_partials(partials, APSL_PARTIAL_NOT_FINITE, groups, scratch);
-    const float residual = sum_partials(partials, APSL_PARTIAL_RESIDUAL_EVEN, groups, scratch);
+    const apslk_area_change change = area_change(partials, groups, scratch);
+    const float not_finite = sum_partials(partials, APSLK_PARTIAL_NOT_FINITE, groups, scratch);
+    const float residual = sum_partials(partials, APSLK_PARTIAL_RESIDUAL_EVEN, groups, scratch);
     if (get_local_id(0) != 0 || states[c].stopped) return;
-    const int walked = parameters[c].walked;
-    if (sub_step == 0 && walked == 0) store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
+    const int small_steps = parameters[c].small_steps;
+    if (sub_step == 0 && small_steps == 0) store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     const bool broken = not_finite > 0.0f || !isfinite(residual);
     // On the way the areas are not those of the end of the step.
-    const bool done = sub_step >= walked && change.max <= parameters[c].target_area_change;
-    if (broken) stats[c].status = APSL_STATUS_DIVERGED;
+    const bool done = sub_step >= small_steps && change.max <= parameters[c].target_area_change;
+    if (broken) stats[c].status = APSLK_STATUS_DIVERGED;
     if (broken || done || sub_step >= parameters[c].sub_steps) {
         states[c].stopped = 1;
     } else {
@@ -58,34 +58,34 @@ APSL_KERNEL void begin_solve(__global const apsl_parameters* parameters, __globa
 
 // Statistics of the areas the call leaves behind; a call that went wrong on the way, or left the cloth worse than it
 // was, leaves nothing behind.
-APSL_KERNEL void end_call(__global const apsl_cloth* cloths, __global apsl_solve_state* states,
-                          __global apsl_stats* stats, __global float* partials, __global const uint* vertex_order,
-                          __global const uint* triangle_order, __global const uint* triangles,
-                          __global const float4* predicted, __global const float* rest_areas, uint groups) {
-    APSL_SCRATCH;
+APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_solve_state* states,
+                           __global apslk_stats* stats, __global float* partials, __global const uint* vertex_order,
+                           __global const uint* triangle_order, __global const uint* triangles,
+                           __global const float4* moved, __global const float* rest_areas, uint groups) {
+    APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const apsl_area_change change = area_change(partials, groups, scratch);
-    const bool bad_vertices = sum_partials(partials, APSL_PARTIAL_BAD_VERTICES, groups, scratch) > 0.0f;
-    const float not_finite = sum_partials(partials, APSL_PARTIAL_NOT_FINITE, groups, scratch);
-    const float extent = max_partials(partials, APSL_PARTIAL_EXTENT, groups, scratch);
-    const float raised = sum_partials(partials, APSL_PARTIAL_RAISED, groups, scratch);
-    const float mass_ratio = max_partials(partials, APSL_PARTIAL_MASS_RATIO, groups, scratch);
-    const bool diverged = bad_vertices || not_finite > 0.0f || stats[c].status == APSL_STATUS_DIVERGED;
+    const apslk_area_change change = area_change(partials, groups, scratch);
+    const bool bad_vertices = sum_partials(partials, APSLK_PARTIAL_BAD_VERTICES, groups, scratch) > 0.0f;
+    const float not_finite = sum_partials(partials, APSLK_PARTIAL_NOT_FINITE, groups, scratch);
+    const float extent = max_partials(partials, APSLK_PARTIAL_EXTENT, groups, scratch);
+    const float raised = sum_partials(partials, APSLK_PARTIAL_RAISED, groups, scratch);
+    const float mass_ratio = max_partials(partials, APSLK_PARTIAL_MASS_RATIO, groups, scratch);
+    const bool diverged = bad_vertices || not_finite > 0.0f || stats[c].status == APSLK_STATUS_DIVERGED;
     const bool none = stats[c].sub_steps == 0;
     if (none && get_local_id(0) == 0) store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     group_memory_barrier();
-    const apsl_area_change initial = stored_initial(states + c, stats + c);
-    const apsl_verdict verdict =
+    const apslk_area_change initial = stored_initial(states + c, stats + c);
+    const apslk_verdict verdict =
         judge(initial, change, greatest_change_at_rest(extent, change.measured, cloths[c].triangle_count));
     name_offender(stats + c, search_for(diverged, bad_vertices, verdict, change.max), cloths[c], vertex_order,
-                  triangle_order, triangles, predicted, rest_areas, scratch);
+                  triangle_order, triangles, moved, rest_areas, scratch);
     group_memory_barrier();  // all have read the status
     if (get_local_id(0) != 0) return;
     store_area_change(stats + c, diverged || verdict.worse ? initial : change);
-    if (verdict.rose) stats[c].status = APSL_STATUS_WORSENED;
-    if (diverged) stats[c].status = APSL_STATUS_DIVERGED;
+    if (verdict.rose) stats[c].status = APSLK_STATUS_WORSENED;
+    if (diverged) stats[c].status = APSLK_STATUS_DIVERGED;
     states[c].discarded = diverged || verdict.worse || none;
-    if (stats[c].status == APSL_STATUS_OFF) return;
+    if (stats[c].status == APSLK_STATUS_OFF) return;
     stats[c].raised_vertices = (uint)raised;
     stats[c].greatest_mass_ratio = mass_ratio;
 }

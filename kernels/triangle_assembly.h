@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What a solve needs of the geometry of its triangles, computed APSL_LANES triangles at a time.
+// What a solve needs of the geometry of its triangles, computed APSLK_LANES triangles at a time.
 // Reference: apsl::reference, geometry, and the diagonal of Eq. (3).
-#ifndef APSL_TRIANGLE_ASSEMBLY_H
-#define APSL_TRIANGLE_ASSEMBLY_H
+#ifndef APSLK_TRIANGLE_ASSEMBLY_H
+#define APSLK_TRIANGLE_ASSEMBLY_H
 
 #include "area_sums.h"
 #include "gradients.h"
@@ -13,18 +13,18 @@
 #include "work_group.h"
 
 // 1: systems are solved by a polynomial that the bound of the matrix is made for.
-#ifndef APSL_CHEBYSHEV
-#define APSL_CHEBYSHEV 0
+#ifndef APSLK_CHEBYSHEV
+#define APSLK_CHEBYSHEV 0
 #endif
 
 // s = 1/√(α D); 0 where nothing can move the triangle, which makes its pressure 0 by definition.
-APSL_INLINE lanes jacobi_scale(lanes damped_diagonal, lanes rest_area) {
-    const lanes scale = select((lanes)(0.0f), 1.0f / sqrt(damped_diagonal), damped_diagonal > 0.0f);
+APSLK_INLINE lanes jacobi_scale(lanes scaled_diagonal, lanes rest_area) {
+    const lanes scale = select((lanes)(0.0f), 1.0f / sqrt(scaled_diagonal), scaled_diagonal > 0.0f);
     return select((lanes)(0.0f), scale, rest_area > 0.0f);
 }
 
 // Two words of 16-bit fixed point: x and y, z and zero.
-APSL_INLINE void pack_gradient(apsl_triangle_geometry t, uint corner, lanes scale, lanes_int* words) {
+APSLK_INLINE void pack_gradient(apslk_triangle_geometry t, uint corner, lanes scale, lanes_int* words) {
     const lanes4 g = cross_product(t.normal, t.edge[corner]);
     const lanes factor = 32767.0f * scale * sqrt(0.5f * t.inverse_mass[corner]);
     const lanes_int x = to_int(rint(factor * g.x)), y = to_int(rint(factor * g.y)), z = to_int(rint(factor * g.z));
@@ -33,33 +33,29 @@ APSL_INLINE void pack_gradient(apsl_triangle_geometry t, uint corner, lanes scal
 }
 
 // The caller's values in the limiter's order. The padding keeps what it was made with: no rest area.
-APSL_INLINE void order_values(apsl_cloth cloth, bool active, __global const uint* triangle_order,
-                              __global float* ordered_rest_areas, __global float* ordered_regularization,
-                              __global const float* rest_areas, __global const float* regularization) {
-    const apsl_range range = share_of(cloth.triangle_count, active);
-    for (uint t = range.first; t < range.end; t += APSL_WORK_GROUP_SIZE) {
+APSLK_INLINE void order_values(apslk_cloth cloth, bool active, __global const uint* triangle_order,
+                               __global float* ordered_rest_areas, __global float* ordered_scaling,
+                               __global const float* rest_areas, __global const float* regularization) {
+    const apslk_range range = share_of(cloth.triangle_count, active);
+    for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
         float rest_area = rest_areas[triangle_order[a]];
-#if APSL_REGULARIZATION_PER_TRIANGLE
+#if APSLK_REGULARIZATION_PER_TRIANGLE
         const float alpha = regularization[triangle_order[a]];
-        ordered_regularization[a] = fmax(alpha, 1.0f);
+        ordered_scaling[a] = fmax(alpha, 1.0f);
         if (!isfinite(alpha)) rest_area = NAN;  // one witness for both
 #else
-        (void)ordered_regularization;
+        (void)ordered_scaling;
         (void)regularization;
 #endif
         ordered_rest_areas[a] = rest_area;
     }
 }
 
-// Safety factor of the bound of the matrix. With Options::bound_period above 1 the directions in it are those of an
-// earlier sub-step, and the cloth has moved since.
-#define APSL_BOUND_MARGIN 1.1f
-
 // B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|². Reference: apsl::reference::diagonal_bound. Written out: where LLVM unrolls it as
 // a loop, it leaves an intrinsic that Oclgrind does not have.
-APSL_INLINE lanes bounded_diagonal(apsl_triangle_geometry t, __global const uint* triangles,
-                                   __global const float* vertex_bounds, uint first) {
+APSLK_INLINE lanes bounded_diagonal(apslk_triangle_geometry t, __global const uint* triangles,
+                                    __global const float* vertex_bounds, uint first) {
     const lanes s0 = load_corner_values(triangles, vertex_bounds, first, 0);
     const lanes s1 = load_corner_values(triangles, vertex_bounds, first, 1);
     const lanes s2 = load_corner_values(triangles, vertex_bounds, first, 2);
@@ -69,43 +65,44 @@ APSL_INLINE lanes bounded_diagonal(apsl_triangle_geometry t, __global const uint
 }
 
 typedef struct {
-    apsl_area_sums areas;
+    apslk_area_sums areas;
     lanes squares, scaled_squares;  // of the right-hand side, plain and scaled
-} apsl_assembly_sums;
+} apslk_assembly_sums;
 
-// gradients[a], residual[a] = s b, damped_diagonal[a] = α D. b = A − A⁰, in a walk less the share `error_left` of
+// gradients[a], residual[a] = s b, scaled_diagonal[a] = α D. b = A − A⁰, in small steps less the share `error_left` of
 // `start_errors`. `alpha` holds for all triangles, unless `regularization` has one for each. Both come from
 // order_values. For a Chebyshev solve `regularization` holds s_i of the vertices, B takes the place of α D, and there
 // is no damping.
-APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active, float alpha, float damping,
-                                                  float adaptive_factor, __global const uint* triangles,
-                                                  __global const float4* predicted, __global apsl_gradients* gradients,
-                                                  __global float* residual, __global float* damped_diagonal,
-                                                  __global const float* rest_areas,
-                                                  __global const float* regularization, bool walking, float error_left,
-                                                  __global const float* start_errors) {
-    const apsl_range range = share_of(blocks_of(cloth), active);
-    apsl_assembly_sums sums;
+APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool active, float alpha, float damping,
+                                                    float adaptive_factor, __global const uint* triangles,
+                                                    __global const float4* moved, __global apslk_gradients* gradients,
+                                                    __global float* residual, __global float* scaled_diagonal,
+                                                    __global const float* rest_areas,
+                                                    __global const float* regularization, bool in_small_steps,
+                                                    float error_left, __global const float* start_errors) {
+    const apslk_range range = share_of(blocks_of(cloth), active);
+    apslk_assembly_sums sums;
     sums.areas = no_areas();
     sums.squares = 0.0f;
     sums.scaled_squares = 0.0f;
-    for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
-        const uint a = cloth.triangle_begin + block * APSL_LANES;
-        const apsl_triangle_geometry triangle = load_triangles(triangles, predicted, a);
+    for (uint block = range.first; block < range.end; block += APSLK_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + block * APSLK_LANES;
+        const apslk_triangle_geometry triangle = load_triangles(triangles, moved, a);
         const lanes rest_area = load_lanes(rest_areas, a);
         lanes excess = triangle.area - rest_area;
-        if (walking) {  // uniform
+        if (in_small_steps) {  // uniform
             if (error_left > 0.0f) excess -= error_left * load_lanes(start_errors, a);
-            const lanes least = (1.0f - APSL_GREATEST_GROWTH) * triangle.area;
+            const lanes least = (1.0f - APSLK_GREATEST_GROWTH) * triangle.area;
             excess = select(excess, least, excess < least);  // a NaN stays
         }
-#if APSL_CHEBYSHEV
+#if APSLK_CHEBYSHEV
         (void)alpha;
         (void)damping;
         (void)adaptive_factor;
-        const lanes damped = APSL_BOUND_MARGIN * bounded_diagonal(triangle, triangles, regularization, a), shift = 0.0f;
+        const lanes damped = APSLK_BOUND_MARGIN * bounded_diagonal(triangle, triangles, regularization, a),
+                    shift = 0.0f;
 #else
-#if APSL_REGULARIZATION_PER_TRIANGLE
+#if APSLK_REGULARIZATION_PER_TRIANGLE
         (void)alpha;
         const lanes given = load_lanes(regularization, a);
 #else
@@ -127,7 +124,7 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
         words[7] = bits_of(select((lanes)(0.0f), 1.0f / (scale * triangle.area), scale * triangle.area > 0.0f));
         store_records(words, (__global int4*)gradients, a);
         store_lanes(r, residual, a);
-        store_lanes(damped, damped_diagonal, a);
+        store_lanes(damped, scaled_diagonal, a);
         sums.squares += stretch * stretch;
         sums.scaled_squares += r * r;
         add_areas(&sums.areas, triangle, rest_area);
@@ -137,13 +134,13 @@ APSL_INLINE apsl_assembly_sums assemble_triangles(apsl_cloth cloth, bool active,
 
 // start_errors[a] = A − A⁰ at the start of the step, whose vertices are in `start`; 0 where there is no rest area.
 // Returns how many of this work-item's are not finite.
-APSL_INLINE lanes find_start_errors(apsl_cloth cloth, bool active, __global const uint* triangles,
-                                    __global const float4* start, __global const float* rest_areas,
-                                    __global float* start_errors) {
-    const apsl_range range = share_of(blocks_of(cloth), active);
+APSLK_INLINE lanes find_start_errors(apslk_cloth cloth, bool active, __global const uint* triangles,
+                                     __global const float4* start, __global const float* rest_areas,
+                                     __global float* start_errors) {
+    const apslk_range range = share_of(blocks_of(cloth), active);
     lanes not_finite = 0.0f;
-    for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
-        const uint a = cloth.triangle_begin + block * APSL_LANES;
+    for (uint block = range.first; block < range.end; block += APSLK_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + block * APSLK_LANES;
         const lanes area = load_triangles(triangles, start, a).area, rest_area = load_lanes(rest_areas, a);
         const lanes error = select((lanes)(0.0f), area - rest_area, rest_area > 0.0f);
         store_lanes(error, start_errors, a);
@@ -153,13 +150,13 @@ APSL_INLINE lanes find_start_errors(apsl_cloth cloth, bool active, __global cons
 }
 
 // The areas alone.
-APSL_INLINE apsl_area_sums measure_triangles(apsl_cloth cloth, bool active, __global const uint* triangles,
-                                             __global const float4* predicted, __global const float* rest_areas) {
-    const apsl_range range = share_of(blocks_of(cloth), active);
-    apsl_area_sums sums = no_areas();
-    for (uint block = range.first; block < range.end; block += APSL_WORK_GROUP_SIZE) {
-        const uint a = cloth.triangle_begin + block * APSL_LANES;
-        add_areas(&sums, load_triangles(triangles, predicted, a), load_lanes(rest_areas, a));
+APSLK_INLINE apslk_area_sums measure_triangles(apslk_cloth cloth, bool active, __global const uint* triangles,
+                                               __global const float4* moved, __global const float* rest_areas) {
+    const apslk_range range = share_of(blocks_of(cloth), active);
+    apslk_area_sums sums = no_areas();
+    for (uint block = range.first; block < range.end; block += APSLK_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + block * APSLK_LANES;
+        add_areas(&sums, load_triangles(triangles, moved, a), load_lanes(rest_areas, a));
     }
     return sums;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Edges, unit normal, area and diagonal entry of a triangle. Reference: apsl::reference, geometry.
-#ifndef APSL_TRIANGLE_GEOMETRY_H
-#define APSL_TRIANGLE_GEOMETRY_H
+#ifndef APSLK_TRIANGLE_GEOMETRY_H
+#define APSLK_TRIANGLE_GEOMETRY_H
 
 #include "lanes.h"
 
@@ -11,10 +11,10 @@ typedef struct {
     lanes4 normal;          // unit, or zero where the triangle has no area
     lanes area;             // m²
     lanes diagonal;         // Eq. (3): D = ½ Σ w |e|², m²/kg
-} apsl_triangle_geometry;
+} apslk_triangle_geometry;
 
-APSL_INLINE apsl_triangle_geometry triangle_geometry(lanes4 x0, lanes4 x1, lanes4 x2) {
-    apsl_triangle_geometry t;
+APSLK_INLINE apslk_triangle_geometry triangle_geometry(lanes4 x0, lanes4 x1, lanes4 x2) {
+    apslk_triangle_geometry t;
     t.edge[0] = minus(x2, x1);
     t.edge[1] = minus(x0, x2);
     t.edge[2] = minus(x1, x0);
@@ -34,11 +34,11 @@ APSL_INLINE apsl_triangle_geometry triangle_geometry(lanes4 x0, lanes4 x1, lanes
     return t;
 }
 
-APSL_INLINE apsl_triangle_geometry load_triangles(__global const uint* triangles, __global const float4* predicted,
-                                                  uint first) {
-    return triangle_geometry(load_corner_vertices(triangles, predicted, first, 0),
-                             load_corner_vertices(triangles, predicted, first, 1),
-                             load_corner_vertices(triangles, predicted, first, 2));
+APSLK_INLINE apslk_triangle_geometry load_triangles(__global const uint* triangles, __global const float4* moved,
+                                                    uint first) {
+    return triangle_geometry(load_corner_vertices(triangles, moved, first, 0),
+                             load_corner_vertices(triangles, moved, first, 1),
+                             load_corner_vertices(triangles, moved, first, 2));
 }
 
 #endif

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Algorithm 1, output: ṽ ← ṽ + (x − (x̃ + Δt ṽ)) / Δt. Only the corrections go in: with x the predicted position, the
+// Algorithm 1, output: ṽ ← ṽ + (x − (x̃ + Δt ṽ)) / Δt. Only the corrections go in: with x the moved position, the
 // line as printed would count Δt ṽ twice. Reference: apsl::reference, strain_limiter. Moves 20 B + 24 B read, 12 B
-// written a vertex (strides of 3); after a walk 16 B more read.
-// With APSL_POSITIONS_ONLY the corrected positions instead: `velocities` is then the caller's positions.
+// written a vertex (strides of 3); after small steps 16 B more read.
+// With APSLK_POSITIONS_ONLY the corrected positions instead: `velocities` is then the caller's positions.
 #include "layout.h"
 #include "vertex_motion.h"
 #include "work_group.h"
 
-APSL_KERNEL void update_velocities(__global const apsl_cloth* cloths, __global const apsl_parameters* parameters,
-                                   __global const apsl_solve_state* states, __global const uint* vertex_order,
-                                   __global const float4* predicted, __global const float4* correction,
-                                   __global const float* positions, ulong position_offset, __global float* velocities,
-                                   ulong velocity_offset) {
+APSLK_KERNEL void update_velocities(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                                    __global const apslk_solve_state* states, __global const uint* vertex_order,
+                                    __global const float4* moved, __global const float4* total_correction,
+                                    __global const float* positions, ulong position_offset, __global float* velocities,
+                                    ulong velocity_offset) {
     const uint c = (uint)get_group_id(1);
-    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, walked_sub_steps(parameters[c]) > 0,
-                      vertex_order, predicted, correction, positions + position_offset, velocities + velocity_offset);
+    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, small_step_count(parameters[c]) > 0,
+                      vertex_order, moved, total_correction, positions + position_offset, velocities + velocity_offset);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a vertex receives from the triangles around it: a gather over its corners in a fixed order, since OpenCL 1.2 has
 // no float atomics and a gather repeats exactly.
-#ifndef APSL_VERTEX_GATHER_H
-#define APSL_VERTEX_GATHER_H
+#ifndef APSLK_VERTEX_GATHER_H
+#define APSLK_VERTEX_GATHER_H
 
 #include "gradients.h"
 #include "layout.h"
@@ -10,39 +10,39 @@
 typedef struct {
     float4 force;     // Σ_{a∋i} y_a ḡ_{a,i}; w is zero
     float stiffness;  // K_i w_i = Σ_{a∋i} max(y_a, 0) √(α D_a) / A_a |ḡ_{a,i}|²: geometric stiffness over mass
-} apsl_corner_sums;
+} apslk_corner_sums;
 
 // Reference: apsl::reference::geometric_stiffness. With λ = y/√(α D) and ḡ = √(w/2) g/√(α D), λ |g|²/(2A) is
 // y √(α D)/A |ḡ|²/w.
-APSL_INLINE apsl_corner_sums sums_over_corners(__global const uint* corner_offsets, __global const uint* corners,
-                                               __global const apsl_gradients* gradients, __global const float* pressure,
-                                               uint i) {
-    apsl_corner_sums sums;
+APSLK_INLINE apslk_corner_sums sums_over_corners(__global const uint* corner_offsets, __global const uint* corners,
+                                                 __global const apslk_gradients* gradients,
+                                                 __global const float* pressure, uint i) {
+    apslk_corner_sums sums;
     sums.force = (float4)(0.0f);
     float4 squares = (float4)(0.0f);  // by component: the sum over them is one, at the end
     const uint end = corner_offsets[i + 1];
     for (uint n = corner_offsets[i]; n < end; ++n) {
-        const uint corner = corners[n], a = APSL_CORNER_TRIANGLE(corner);
+        const uint corner = corners[n], a = APSLK_CORNER_TRIANGLE(corner);
         const float4 g = corner_gradient(gradients, corner);
         const float y = pressure[a];
         sums.force += y * g;
         squares += fmax(y, 0.0f) * gradients[a].stiffening * (g * g);
     }
-    sums.force *= APSL_GRADIENT_UNIT;
-    sums.stiffness = (APSL_GRADIENT_UNIT * APSL_GRADIENT_UNIT) * (squares.x + squares.y + squares.z);
+    sums.force *= APSLK_GRADIENT_UNIT;
+    sums.stiffness = (APSLK_GRADIENT_UNIT * APSLK_GRADIENT_UNIT) * (squares.x + squares.y + squares.z);
     return sums;
 }
 
 // Σ_{a∋i} values_a ḡ_{a,i}; w is zero.
-APSL_INLINE float4 sum_over_corners(__global const uint* corner_offsets, __global const uint* corners,
-                                    __global const apsl_gradients* gradients, __global const float* values, uint i) {
+APSLK_INLINE float4 sum_over_corners(__global const uint* corner_offsets, __global const uint* corners,
+                                     __global const apslk_gradients* gradients, __global const float* values, uint i) {
     float4 sum = (float4)(0.0f);
     const uint end = corner_offsets[i + 1];
     for (uint n = corner_offsets[i]; n < end; ++n) {
         const uint corner = corners[n];
-        sum += values[APSL_CORNER_TRIANGLE(corner)] * corner_gradient(gradients, corner);
+        sum += values[APSLK_CORNER_TRIANGLE(corner)] * corner_gradient(gradients, corner);
     }
-    return sum * APSL_GRADIENT_UNIT;
+    return sum * APSLK_GRADIENT_UNIT;
 }
 
 #endif

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "../kernels/constants.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace apsl {
 
-/// Safety factor of the bound of the matrix. With Options::bound_period above 1 the directions in it are those of an
-/// earlier sub-step, and the cloth has moved since.
-inline constexpr float bound_margin = 1.1f;
-/// Further safety factor at vertices whose masses are raised: slivers turn fast.
-inline constexpr float raised_margin = 1.2f;
+inline constexpr float bound_margin = APSLK_BOUND_MARGIN;
+inline constexpr float raised_margin = APSLK_RAISED_MARGIN;
 
 /// Products with the matrix in a Chebyshev solve, whose polynomial has one degree more: at least 1, at most `most`.
 ///
@@ -18,7 +17,7 @@ inline constexpr float raised_margin = 1.2f;
 /// a polynomial of degree d, the matrix being scaled by its bound, some three times diag G on a flat mesh: equal at
 /// d = √(2.8/(α − 1)).
 inline int chebyshev_products(double alpha, int most) {
-    const double degree = std::sqrt(2.8 / (alpha - 1.0));
+    const double degree = std::sqrt(static_cast<double>(APSLK_CHEBYSHEV_REACH) / (alpha - 1.0));
     return static_cast<int>(std::clamp(std::round(degree) - 1.0, 1.0, std::max(1.0, static_cast<double>(most))));
 }
 

@@ -59,7 +59,7 @@ inline constexpr std::tuple parameter_fields{
           "CG stops at this residual over the right-hand side; in small steps at three times it."},
     Field{"max_iterations", &Parameters::max_iterations, at_least_one, "", "CG iterations a solve, at most."},
     Field{
-        "adaptive_iterations", &Parameters::adaptive_iterations, any_whole, "",
+        "adaptive_threshold", &Parameters::adaptive_threshold, any_whole, "",
         "0: α stays as given. Otherwise a solve with more CG iterations than this doubles α − 1 for the next, and one "
         "with at most half of it lowers α again towards the given value."},
     Field{"first_regularization", &Parameters::first_regularization,
@@ -83,13 +83,13 @@ inline constexpr std::tuple option_fields{
           "Work-items a group, a power of two. 0: what suits the device.", false},
     Field{"regularization_per_triangle", &Options::regularization_per_triangle, Bounds{}, "",
           "Each triangle has its own α, given with every call.", false},
-    Field{"kept_pressures", &Options::kept_pressures, Bounds{.least = 0.0, .greatest = 65536.0}, "",
-          "The pressures of this many sub-steps are the first guess for the solves of the next call. 0: solves start "
-          "from zero."},
+    Field{"warm_start_sub_steps", &Options::warm_start_sub_steps, Bounds{.least = 0.0, .greatest = 65536.0}, "",
+          "The solves of the next call start from the pressures of this many sub-steps. 0: they start from zero."},
     Field{"solver", &Options::solver, Bounds{}, "",
           "chebyshev: a fixed polynomial with the reach of α in place of CG, one launch an iteration. It requires "
-          "matrix consistent, apply matrix_free, one α for all triangles, kept_pressures 0 and adaptive_iterations 0."},
-    Field{"bound_period", &Options::bound_period, at_least_one, "",
+          "matrix consistent, apply matrix_free, one α for all triangles, warm_start_sub_steps 0 and "
+          "adaptive_threshold 0."},
+    Field{"bound_interval", &Options::bound_interval, at_least_one, "",
           "By chebyshev: sub-steps from one bound of the matrix to the next. 1 for garments; as many as there are "
           "sub-steps where triangles keep their shape."},
 };
@@ -151,11 +151,10 @@ struct AnyValue {
 /// Number of fields of a plain struct: how many values its braces take.
 template <class Struct, class... Values>
 consteval std::size_t field_count() {
-    if constexpr (requires { Struct{Values{}..., AnyValue{}}; }) {
+    if constexpr (requires { Struct{Values{}..., AnyValue{}}; })
         return field_count<Struct, Values..., AnyValue>();
-    } else {
+    else
         return sizeof...(Values);
-    }
 }
 
 static_assert(std::tuple_size_v<decltype(parameter_fields)> == field_count<Parameters>(),

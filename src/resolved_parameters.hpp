@@ -14,7 +14,7 @@ namespace apsl {
 /// steps are small or α follows a schedule.
 struct ResolvedParameters : Parameters {
     /// Sub-steps that move on by a part of the time step, an equal one each; 0 where all correct at its end.
-    int walked = 0;
+    int small_steps = 0;
     /// Whether sub-steps may raise masses. Stiffness grows with the square of a part of Δt: in fewer and longer parts
     /// ordinary vertices would be taken for light ones.
     bool raises_masses = false;
@@ -24,12 +24,12 @@ struct ResolvedParameters : Parameters {
     /// `given`: valid. Not explicit: wherever parameters are at hand, these are.
     ResolvedParameters(const Parameters& given, const Options& options = {}) : Parameters(given) {
         // Below 20 sub-steps the parts are long, so that solves must be tighter than usual: automatic leaves the step
-        // whole. Positions alone have no velocities to walk by.
+        // whole. Positions alone have no velocities to move on by.
         const bool small = stepping == Stepping::small_steps ||
                            (stepping == Stepping::automatic && sub_steps >= least_automatic_small_steps);
-        if (enabled && small && !options.positions_only && sub_steps >= 2) walked = sub_steps - 1;
-        raises_masses = walked + 1 >= least_automatic_small_steps;
-        solve_tolerance = walked > 0 ? std::min(3.0f * tolerance, 0.9f) : tolerance;
+        if (enabled && small && !options.positions_only && sub_steps >= 2) small_steps = sub_steps - 1;
+        raises_masses = small_steps + 1 >= least_automatic_small_steps;
+        solve_tolerance = small_steps > 0 ? std::min(3.0f * tolerance, 0.9f) : tolerance;
         first_alpha = first_regularization > 0.0f && sub_steps > 1 ? first_regularization : regularization;
     }
 };

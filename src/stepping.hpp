@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "../kernels/constants.h"
+
 namespace apsl {
 
 /// The fewest sub-steps for which Stepping::automatic takes small steps.
 inline constexpr int least_automatic_small_steps = 20;
 
-/// The area that a small step asks of a triangle at most, as a multiple of its present area. A linearised step from
-/// nearly no area overshoots without bound.
-inline constexpr float greatest_growth = 4.0f;
+inline constexpr float greatest_growth = APSLK_GREATEST_GROWTH;
 
-/// The share of the start's area error that is still there as planned after sub-step `sub_step` of a walk of `parts`
-/// parts: it is led back to zero over the whole step (docs/formulation.md, Small steps).
+/// The share of the start's area error that is still there as planned after sub-step `sub_step` of small steps of
+/// `parts` parts: it is led back to zero over the whole step (docs/formulation.md, Small steps).
 inline float start_error_left(int sub_step, int parts) {
     return sub_step < parts ? static_cast<float>(parts - 1 - sub_step) / static_cast<float>(parts) : 0.0f;
 }

@@ -82,7 +82,7 @@ void validate(const Options& options) {
     }
     if (options.solver == Solver::chebyshev) {
         if (!matrix_free) invalid("solver is chebyshev, which needs the consistent matrix, matrix-free");
-        if (options.kept_pressures > 0) invalid("solver is chebyshev, which takes no kept_pressures");
+        if (options.warm_start_sub_steps > 0) invalid("solver is chebyshev, which takes no warm_start_sub_steps");
         if (options.regularization_per_triangle)
             invalid("solver is chebyshev, which needs one regularization for all triangles");
     }
@@ -93,8 +93,8 @@ void validate(const Options& options, const Parameters& parameters) {
     validate(parameters);
     if (options.positions_only && parameters.stepping == Stepping::small_steps)
         invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
-    if (options.solver == Solver::chebyshev && parameters.adaptive_iterations > 0)
-        invalid("adaptive_iterations is " + std::to_string(parameters.adaptive_iterations) +
+    if (options.solver == Solver::chebyshev && parameters.adaptive_threshold > 0)
+        invalid("adaptive_threshold is " + std::to_string(parameters.adaptive_threshold) +
                 ", expected 0: Options::solver is chebyshev, which has no iterations to go by");
 }
 

@@ -9,9 +9,9 @@ WIDE_DOTS_PER_INCH = 120  # 11 inches make 1320 pixels
 OURS = "apsl"  # names of our own variants begin so
 WORST_SHOWN = 10.0  # 1000 %: a run beyond it has broken down, whatever its status says
 
-# Rivals keep their colour and marker from chart to chart; twenty are told apart by both together.
-RIVAL_COLOURS = ("#D55E00", "#009E73", "#CC79A7", "#E69F00", "#8c564b", "#6b6ecf", "#637939")
-RIVAL_MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">")
+# Baselines keep their colour and marker from chart to chart; twenty are told apart by both together.
+BASELINE_COLOURS = ("#D55E00", "#009E73", "#CC79A7", "#E69F00", "#8c564b", "#6b6ecf", "#637939")
+BASELINE_MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">")
 OUR_COLOURS = ("#0072B2", "#56B4E9", "#003f6b", "#4a90c2", "#7fb3d5", "#1f4e79", "#9ecae1")
 OUR_MARKERS = ("o", "s", "D", "^", "v", "P", "X", "*")
 # Apart from the other blues: small steps, and what the library does by default.
@@ -32,7 +32,7 @@ def read_results(path):
     results = read_json(path)
     try:
         for run in results["runs"]:
-            str(run["scene"]), str(run["method"]), str(run["title"]), dict(run["knobs"]), str(run["status"])
+            str(run["scene"]), str(run["method"]), str(run["title"]), dict(run["parameters"]), str(run["status"])
             run["milliseconds"] = 1e3 * number(run["limiter_seconds_per_frame"]["median"])
             for field in ("max_area_change", "mean_max_area_change", "rms_area_change"):
                 run[field] = number(run[field])
@@ -67,7 +67,7 @@ def by_method(runs):
 def styles(results):
     """{method: (colour, marker, line width)}, the same for every chart of these results."""
     table = {}
-    rivals = ours = 0
+    baselines = ours = 0
     for run in results["runs"]:
         method = run["method"]
         if method in table:
@@ -77,9 +77,9 @@ def styles(results):
             table[method] = (colour, OUR_MARKERS[ours % len(OUR_MARKERS)], 2.2)
             ours += 1
         else:
-            table[method] = (RIVAL_COLOURS[rivals % len(RIVAL_COLOURS)],
-                             RIVAL_MARKERS[(rivals + 3 * (rivals // len(RIVAL_COLOURS))) % len(RIVAL_MARKERS)], 1.1)
-            rivals += 1
+            table[method] = (BASELINE_COLOURS[baselines % len(BASELINE_COLOURS)],
+                             BASELINE_MARKERS[(baselines + 3 * (baselines // len(BASELINE_COLOURS))) % len(BASELINE_MARKERS)], 1.1)
+            baselines += 1
     return table
 
 

@@ -15,17 +15,17 @@ PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2,
 
 
 def is_paper_setting(run):
-    return run["method"] == "apsl" and all(run["knobs"].get(name) == value for name, value in PAPER.items())
+    return run["method"] == "apsl" and all(run["parameters"].get(name) == value for name, value in PAPER.items())
 
 
 def shown(value):
     return f"{plain(round(100.0 * value, 3))} %"
 
 
-def knobs_of(run):
-    return ", ".join(f"{name.split('.')[-1]} {value:g}" for name, value in run["knobs"].items()
+def parameters_of(run):
+    return ", ".join(f"{name.split('.')[-1]} {value:g}" for name, value in run["parameters"].items()
                      if isinstance(value, (int, float)) and value > 0 and name.split(".")[-1] not in (
-                         "max_iterations", "kept_pressures", "steps_per_frame", "adaptive_iterations"))
+                         "max_iterations", "warm_start_sub_steps", "steps_per_frame", "adaptive_threshold"))
 
 
 def against_paper(runs):
@@ -40,18 +40,18 @@ def against_paper(runs):
     return paper, best, quickest
 
 
-def against_rivals(runs):
-    """[(error, milliseconds of ours, of the best rival, its title)], where both reach it."""
+def against_baselines(runs):
+    """[(error, milliseconds of ours, of the best baseline, its title)], where both reach it."""
     table = []
     for level in LEVELS:
         ours = time_at([run for run in runs if is_ours(run["method"])], MEAN, level)
-        rivals = []
+        baselines = []
         for method in {run["method"] for run in runs if not is_ours(run["method"])}:
             own = [run for run in runs if run["method"] == method]
             at = time_at(own, MEAN, level)
             if at is not None:
-                rivals.append((at, own[0]["title"]))
-        table.append((level, ours, *(min(rivals) if rivals else (None, "none reaches it"))))
+                baselines.append((at, own[0]["title"]))
+        table.append((level, ours, *(min(baselines) if baselines else (None, "none reaches it"))))
     return table
 
 
@@ -60,21 +60,21 @@ def size_rows(results, name):
     paper, best, quickest = against_paper(runs)
     rows = [f"| {name}: mean of each frame's greatest, in the time of the paper's setting ({plain(paper['milliseconds'])}"
             f" ms) | a third of {shown(paper[MEAN])} | {shown(best[MEAN])}, {plain(paper[MEAN] / best[MEAN])} times less "
-            f"({best['title']}: {knobs_of(best)}) |",
+            f"({best['title']}: {parameters_of(best)}) |",
             f"| {name}: greatest | ≤ {shown(paper[GREATEST])} | {shown(best[GREATEST])} |",
             f"| {name}: time for the paper's error | a third of {plain(paper['milliseconds'])} ms | "
             f"{plain(quickest['milliseconds'])} ms, {plain(paper['milliseconds'] / quickest['milliseconds'])} times less "
-            f"({quickest['title']}: {knobs_of(quickest)}) |"]
+            f"({quickest['title']}: {parameters_of(quickest)}) |"]
     least = min((run for run in runs if is_ours(run["method"])), key=lambda run: run[MEAN])
     rows.append(f"| {name}: 0.1 % | reachable | {shown(least[MEAN])} (greatest {shown(least[GREATEST])}) at "
-                f"{plain(least['milliseconds'])} ms ({least['title']}: {knobs_of(least)}) |")
-    for level, ours, rival, title in against_rivals(runs):
-        if ours is None and rival is None:
+                f"{plain(least['milliseconds'])} ms ({least['title']}: {parameters_of(least)}) |")
+    for level, ours, baseline, title in against_baselines(runs):
+        if ours is None and baseline is None:
             continue
         asked = "3×" if "8 k" in name else "5×"
         reached = ("ours does not reach it" if ours is None else f"ours {plain(ours)} ms, none of the others"
-                   if rival is None else f"{plain(rival / ours)}× ({plain(ours)} ms, {title} {plain(rival)} ms)")
-        rows.append(f"| {name}: faster than the best rival at {shown(level)} | {asked} | {reached} |")
+                   if baseline is None else f"{plain(baseline / ours)}× ({plain(ours)} ms, {title} {plain(baseline)} ms)")
+        rows.append(f"| {name}: faster than the best baseline at {shown(level)} | {asked} | {reached} |")
     return rows
 
 
@@ -90,14 +90,14 @@ def growth_row(results, target, of="ours", chosen=is_ours):
 
 
 def in_short(run):
-    """A run of ours by its sub-steps and α, others by all knobs."""
-    knobs = run["knobs"]
-    last, count = knobs.get("strain_limiting.regularization"), knobs.get("strain_limiting.sub_steps")
+    """A run of ours by its sub-steps and α, others by all parameters."""
+    parameters = run["parameters"]
+    last, count = parameters.get("strain_limiting.regularization"), parameters.get("strain_limiting.sub_steps")
     if not is_ours(run["method"]) or last is None or count is None:
-        return f"{run['title']}: {knobs_of(run)}"
-    first = knobs.get("strain_limiting.first_regularization")
+        return f"{run['title']}: {parameters_of(run)}"
+    first = parameters.get("strain_limiting.first_regularization")
     alpha = f"{first:g} → {last:g}" if first else f"{last:g}"
-    period = knobs.get("strain_limiting.bound_period")
+    period = parameters.get("strain_limiting.bound_interval")
     bound = "" if period is None else ", one bound" if period >= count else f", a bound for {period:g}"
     return f"{run['title'].removeprefix('Area preserving').removeprefix(', ') or 'as the paper'}: {alpha}, {count}{bound}"
 
@@ -113,7 +113,7 @@ def front_rows(results):
         name = scene
         for run in [paper, *(run for run in runs if run is not paper and run["method"] != "none")]:
             setting = "the paper's: 1.2, 10" if run is paper else in_short(run)
-            iterations = run["cg_iterations_per_solve"] * run["solves"] / run["frames"] if run["solves"] else None
+            iterations = run["iterations_per_solve"] * run["solves"] / run["frames"] if run["solves"] else None
             rows.append(f"| {name} | {setting} | {shown(run[MEAN])} | {shown(run[GREATEST])} | "
                         f"{'' if iterations is None else round(iterations)} | "
                         f"{run['milliseconds'] / paper['milliseconds']:.2f} |")

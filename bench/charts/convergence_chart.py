@@ -12,12 +12,12 @@ PASSES = ("iterations", "strain_limiting.sub_steps")
 
 
 def passes_of(run):
-    name = next((name for name in PASSES if name in run["knobs"]), None)
-    return None if name is None else float(run["knobs"][name]) * float(run["knobs"].get("steps_per_frame", 1))
+    name = next((name for name in PASSES if name in run["parameters"]), None)
+    return None if name is None else float(run["parameters"][name]) * float(run["parameters"].get("steps_per_frame", 1))
 
 
 def lowest_by_passes(runs, error):
-    """Over all its other knobs a method's least error at each number of passes."""
+    """Over all its other parameters a method's least error at each number of passes."""
     lowest = {}
     for run in runs:
         passes = passes_of(run)

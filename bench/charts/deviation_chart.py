@@ -30,8 +30,8 @@ def run(arguments):
     for place, (axis, frame) in enumerate(zip([axes] if len(frames) == 1 else axes, frames)):
         for method, own in by_method(limited).items():
             colour, marker, width = table[method]
-            for steps in sorted({run["knobs"]["steps_per_frame"] for run in own}):
-                points = points_of([run for run in own if run["knobs"]["steps_per_frame"] == steps], place)
+            for steps in sorted({run["parameters"]["steps_per_frame"] for run in own}):
+                points = points_of([run for run in own if run["parameters"]["steps_per_frame"] == steps], place)
                 if points:
                     axis.plot(*zip(*points), "-" if steps == 1 else "--", color=colour, marker=marker, markersize=4.5,
                               linewidth=width, label=own[0]["title"] + (f", {steps} steps a frame" if steps > 1 else ""))

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Milliseconds in the limiter per frame against area change, one curve a method, the Pareto front marked; from the
-results of `apsl compare`. A method's curve is its own front over all its knobs; its other runs are small dots."""
+results of `apsl compare`. A method's curve is its own front over all its parameters; its other runs are small dots."""
 
 import sys
 

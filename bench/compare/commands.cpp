@@ -13,7 +13,7 @@ void add_extra_commands(CLI::App& program, std::function<int()>& chosen) {
     CLI::App* command = program.add_subcommand("compare", "run scenes with several limiters, measure each");
     command->add_option("SCENE", options->scenes, "scene files, JSON");
     command->add_option("--methods", options->methods, "a,b,... instead of all, or of the study's")->delimiter(',');
-    command->add_option("--study", options->study, "scenes, methods and knobs, JSON (docs/study.schema.json)");
+    command->add_option("--study", options->study, "scenes, methods and parameters, JSON (docs/study.schema.json)");
     command->add_option("--set", options->overrides, "path=value: change a value of all scenes; repeatable")
         ->take_all()
         ->allow_extra_args(false);
@@ -28,7 +28,7 @@ void add_extra_commands(CLI::App& program, std::function<int()>& chosen) {
     command
         ->add_option("--rounds", options->rounds,
                      "make all runs so often, in turn; times are medians over the rounds; default 1")
-        ->check(CLI::Range(1, compare::kMaxRounds).description(""));
+        ->check(CLI::Range(1, compare::max_rounds).description(""));
     command->add_flag("--profile", options->profile,
                       "run ours a second time for its time on the device, transfers apart");
     command->add_option("--out", options->out, "results, JSON; runs that are in it are not made again")->required();

@@ -39,9 +39,9 @@ Study assemble_study(const CompareOptions& options) {
     if (study.methods.empty()) {
         study.methods = standard_methods(options.methods);
     } else if (!options.methods.empty()) {
-        for (const std::string& name : options.methods) (void)find_contender(name);
-        std::erase_if(study.methods, [&](const ContenderRuns& runs) {
-            return std::find(options.methods.begin(), options.methods.end(), runs.contender->name) ==
+        for (const std::string& name : options.methods) (void)find_method(name);
+        std::erase_if(study.methods, [&](const MethodRuns& runs) {
+            return std::find(options.methods.begin(), options.methods.end(), runs.method->name) ==
                    options.methods.end();
         });
     }
@@ -58,13 +58,14 @@ bool has_stretch_springs(const SceneCase& scene) {
     return scene.document.contains("integrator") && scene.document["integrator"].contains("implicit_springs");
 }
 
-void plan(const SceneCase& scene, const Contender& contender, const KnobValues& knobs, std::vector<PlannedRun>& runs) {
-    PlannedRun run{&scene, &contender, prepare_scene(contender, scene.document, scene.file, knobs)};
-    // Values of knobs that a scene does not take, such as a tolerance of 2, should be known before anything runs.
-    (void)scenes::parse_scene(run.prepared.document, scene.file + ", " + contender.name);
+void plan(const SceneCase& scene, const ComparedMethod& method, const ParameterValues& parameters,
+          std::vector<PlannedRun>& runs) {
+    PlannedRun run{&scene, &method, prepare_scene(method, scene.document, scene.file, parameters)};
+    // Values of parameters that a scene does not take, such as a tolerance of 2, should be known before anything runs.
+    (void)scenes::parse_scene(run.prepared.document, scene.file + ", " + method.name);
     const bool known = std::any_of(runs.begin(), runs.end(), [&](const PlannedRun& other) {
-        return other.scene == &scene && other.contender == &contender &&
-               nlohmann::json(other.prepared.knobs) == nlohmann::json(run.prepared.knobs);
+        return other.scene == &scene && other.method == &method &&
+               nlohmann::json(other.prepared.parameters) == nlohmann::json(run.prepared.parameters);
     });
     if (!known) runs.push_back(std::move(run));
 }
@@ -72,19 +73,20 @@ void plan(const SceneCase& scene, const Contender& contender, const KnobValues& 
 std::vector<PlannedRun> plan_runs(const Study& study) {
     std::vector<PlannedRun> runs;
     for (const SceneCase& scene : study.scenes) {
-        for (const auto& [contender, all_knobs] : study.methods) {
-            if (contender->kind == ContenderKind::springs && !has_stretch_springs(scene)) {
+        for (const auto& [method, all_parameters] : study.methods) {
+            if (method->kind == MethodKind::springs && !has_stretch_springs(scene)) {
                 std::fprintf(stderr, "%s: springs left out, the scene has no stretch springs\n", scene.name.c_str());
                 continue;
             }
-            for (const KnobValues& knobs : all_knobs) {
-                if (contender->kind == ContenderKind::springs) {
+            for (const ParameterValues& parameters : all_parameters) {
+                if (method->kind == MethodKind::springs) {
                     // Their time is what they take longer than the soft ones.
-                    KnobValues steps = KnobValues::object();
-                    if (knobs.contains("steps_per_frame")) steps["steps_per_frame"] = knobs["steps_per_frame"];
-                    plan(scene, find_contender("none"), steps, runs);
+                    ParameterValues steps = ParameterValues::object();
+                    if (parameters.contains("steps_per_frame"))
+                        steps["steps_per_frame"] = parameters["steps_per_frame"];
+                    plan(scene, find_method("none"), steps, runs);
                 }
-                plan(scene, *contender, knobs, runs);
+                plan(scene, *method, parameters, runs);
             }
         }
     }
@@ -109,10 +111,9 @@ std::optional<DeviationPlan> deviation_plan(const Study& study, const SceneCase&
 }
 
 std::string described(const PlannedRun& run) {
-    std::string text = run.scene->name + " " + run.contender->name;
-    for (const auto& [name, value] : run.prepared.knobs.items()) {
+    std::string text = run.scene->name + " " + run.method->name;
+    for (const auto& [name, value] : run.prepared.parameters.items())
         text.append(" ").append(name.substr(name.rfind('.') + 1)).append("=").append(value.dump());
-    }
     return text;
 }
 
@@ -161,7 +162,7 @@ int compare_command(const CompareOptions& options) {
     const std::vector<PlannedRun> runs = plan_runs(study);
     RunConditions conditions{.device = {}, .converged = nullptr, .show = {}};
     if (std::any_of(runs.begin(), runs.end(),
-                    [](const PlannedRun& run) { return run.contender->kind == ContenderKind::ours; })) {
+                    [](const PlannedRun& run) { return run.method->kind == MethodKind::ours; })) {
         conditions.device = scenes::choose_opencl_device(options.device);
     }
     if (study.run_seconds) conditions.run_seconds = *study.run_seconds;
@@ -199,20 +200,19 @@ int compare_command(const CompareOptions& options) {
         }
         std::optional<double> on_device;
         conditions.show = {};
-        if (measured && options.profile && run.contender->kind == ContenderKind::ours) {
+        if (measured && options.profile && run.method->kind == MethodKind::ours)
             on_device = device_seconds(run, conditions);
-        }
         if (!measured || scenes::interrupted()) {
             std::fprintf(stderr, "interrupted before run %zu of %zu was done; the runs before it are in %s\n", number,
                          count, options.out.string().c_str());
-            return scenes::kExitInterrupted;
+            return scenes::exit_interrupted;
         }
         tell(number, count, run, results.add(run, *measured, conditions, deviation, on_device));
         results.write();
     }
     results.write();
     std::printf("%s: %zu runs, %zu of them done before\n", options.out.string().c_str(), count, skipped);
-    return scenes::kExitDone;
+    return scenes::exit_done;
 }
 
 }  // namespace apsl::compare

@@ -23,7 +23,7 @@ struct CompareOptions {
     std::filesystem::path out;
 };
 
-/// Scenes × methods × knobs, one run after the other, each in the results as soon as it is done. Exit codes and
+/// Scenes × methods × parameters, one run after the other, each in the results as soon as it is done. Exit codes and
 /// exceptions as in run/commands.hpp; a method that diverges or runs out of time is a result.
 int compare_command(const CompareOptions& options);
 

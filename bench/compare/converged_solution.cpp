@@ -21,9 +21,8 @@ using nlohmann::json;
 std::uint64_t fnv1a(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::uint64_t hash = 14695981039346656037u;
-    for (std::istreambuf_iterator<char> byte(stream), end; byte != end; ++byte) {
+    for (std::istreambuf_iterator<char> byte(stream), end; byte != end; ++byte)
         hash = (hash ^ static_cast<unsigned char>(*byte)) * 1099511628211u;
-    }
     return hash;
 }
 
@@ -107,9 +106,8 @@ std::optional<ConvergedSolution> converged_solution(const SceneCase& scene, cons
         }
         solution.max_area_change = std::max(solution.max_area_change, report.max_area_change);
         progress.show(report);
-        if (std::find(frames.begin(), frames.end(), frame) != frames.end()) {
+        if (std::find(frames.begin(), frames.end(), frame) != frames.end())
             solution.positions[frame] = simulation.cloth().positions;
-        }
     }
     write_cache(cache, key, solution);
     return solution;

@@ -49,9 +49,8 @@ struct DirectFilter {
         Stats stats{};
         stats.status = Status::diverged;
         predicted.resize(cloth.positions.size());
-        for (std::size_t i = 0; i < predicted.size(); ++i) {
+        for (std::size_t i = 0; i < predicted.size(); ++i)
             predicted[i] = cloth.positions[i] + time_step * cloth.velocities[i];
-        }
         moved = predicted;
         try {
             while (stats.sub_steps < parameters.sub_steps) {
@@ -64,9 +63,8 @@ struct DirectFilter {
             return stats;
         }
         if (!std::all_of(moved.begin(), moved.end(), [](double x) { return std::isfinite(x); })) return stats;
-        for (std::size_t i = 0; i < moved.size(); ++i) {
+        for (std::size_t i = 0; i < moved.size(); ++i)
             if (cloth.inverse_masses[i / 3] > 0.0) cloth.velocities[i] += (moved[i] - predicted[i]) / time_step;
-        }
         stats.status = Status::ok;
         return stats;
     }
@@ -80,9 +78,8 @@ scenes::CustomFilter make_direct_filter(const scenes::ClothState& cloth, const s
     filter.matrix = reference::zero_matrix<double>(filter.pattern);
     filter.parameters = settings.parameters;
     filter.regularization.assign(settings.regularization.begin(), settings.regularization.end());
-    if (filter.regularization.empty()) {
+    if (filter.regularization.empty())
         filter.regularization.assign(cloth.rest_areas.size(), settings.parameters.regularization);
-    }
     return {.name = "strain_limiting",
             .device = "this processor, one thread, double precision",
             .filter = std::move(filter)};

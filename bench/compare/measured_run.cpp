@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "compare/measured_run.hpp"
 
+#include "compare/baseline_filter.hpp"
 #include "compare/direct_filter.hpp"
-#include "compare/rival_filter.hpp"
 #include "run/input_error.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
@@ -17,23 +17,22 @@ namespace {
 
 scenes::FilterStage make_filter(const PlannedRun& run, const RunConditions& conditions, const scenes::Scene& scene,
                                 const scenes::ClothState& cloth) {
-    switch (run.contender->kind) {
-        case ContenderKind::none:
-        case ContenderKind::springs:
+    switch (run.method->kind) {
+        case MethodKind::none:
+        case MethodKind::springs:
             return std::monostate{};
-        case ContenderKind::ours:
+        case MethodKind::ours:
             return scenes::make_filter_stage(scene, cloth, scenes::Backend::opencl, conditions.device,
                                              conditions.profile);
-        case ContenderKind::direct:
+        case MethodKind::direct:
             return make_direct_filter(cloth, scene.strain_limiting.value());
-        case ContenderKind::rival:
+        case MethodKind::baseline:
             break;
     }
-    std::vector<methods::Knob> knobs;
-    for (const ContenderKnob& knob : run.contender->knobs) {
-        knobs.push_back({knob.name, run.prepared.knobs.at(knob.name).get<double>()});
-    }
-    return make_rival_filter(*run.contender->rival, knobs, cloth, scene.time_step);
+    std::vector<methods::Parameter> parameters;
+    for (const MethodParameter& parameter : run.method->parameters)
+        parameters.push_back({parameter.name, run.prepared.parameters.at(parameter.name).get<double>()});
+    return make_baseline_filter(*run.method->baseline, parameters, cloth, scene.time_step);
 }
 
 std::string device_name(const scenes::FilterStage& filter) {
@@ -55,9 +54,8 @@ void measure_cloth(const scenes::ClothState& cloth, int frame, const RunConditio
     result.principal_stretch.max = std::max(result.principal_stretch.max, stretch.max);
     if (conditions.converged == nullptr) return;
     const auto expected = conditions.converged->positions.find(frame);
-    if (expected != conditions.converged->positions.end()) {
+    if (expected != conditions.converged->positions.end())
         result.deviation.push_back({frame, deviation(cloth.positions, expected->second)});
-    }
 }
 
 }  // namespace
@@ -83,9 +81,8 @@ std::optional<MeasuredRun> measure_run(const PlannedRun& run, const RunCondition
         result.frames.push_back(simulation.run_frame());
         result.breakdown = simulation.breakdown();
         if (conditions.profile) {
-            if (auto* opencl = std::get_if<scenes::OpenClFilter>(&simulation.filter())) {
+            if (auto* opencl = std::get_if<scenes::OpenClFilter>(&simulation.filter()))
                 for (const KernelTime& kernel : opencl->kernel_times()) result.device_seconds += kernel.seconds;
-            }
         }
         if (!result.breakdown) {
             measure_cloth(simulation.cloth(), frame, conditions, result);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "compare/contenders.hpp"
+#include "compare/compared_methods.hpp"
 #include "compare/converged_solution.hpp"
 #include "compare/measures.hpp"
 #include "run/opencl_devices.hpp"
@@ -15,16 +15,16 @@
 
 namespace apsl::compare {
 
-/// One contender with one set of knobs on one scene.
+/// One method with one set of parameters on one scene.
 struct PlannedRun {
     const SceneCase* scene;
-    const Contender* contender;
+    const ComparedMethod* method;
     PreparedScene prepared;
 };
 
 /// How a run is made and what is looked at besides.
 struct RunConditions {
-    std::optional<scenes::OpenClDevice> device;  ///< for ContenderKind::ours
+    std::optional<scenes::OpenClDevice> device;  ///< for MethodKind::ours
     double run_seconds = 120.0;                  ///< no frame is begun after so long, set-up apart
     int round = 1;                               ///< 2 for the second time that all runs are made, and so on
     bool keep_frames = false;                    ///< the greatest area change of every frame in the results
@@ -53,7 +53,7 @@ struct MeasuredRun {
     double device_seconds = 0.0;  ///< all kernels, all frames; only with RunConditions::profile
 };
 
-/// None where it was interrupted. Throws InputError and Error for scenes and knobs that cannot be run.
+/// None where it was interrupted. Throws InputError and Error for scenes and parameters that cannot be run.
 std::optional<MeasuredRun> measure_run(const PlannedRun& run, const RunConditions& conditions);
 
 }  // namespace apsl::compare

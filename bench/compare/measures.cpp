@@ -66,9 +66,8 @@ std::array<double, 3> mean_displacement(const scenes::ClothState& cloth) {
         ++count;
         for (std::size_t k = 0; k < 3; ++k) sum[k] += cloth.positions[3 * v + k] - cloth.rest_positions[3 * v + k];
     }
-    if (count > 0) {
+    if (count > 0)
         for (double& component : sum) component /= static_cast<double>(count);
-    }
     return sum;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compare/contenders.hpp"
+#include "compare/compared_methods.hpp"
 #include "run/input_error.hpp"
 #include "run/override_scene.hpp"
 #include "run/scene_document.hpp"
@@ -37,9 +37,8 @@ void fill_in_limiting(nlohmann::json& document) {
 }
 
 void stiffen_springs(nlohmann::json& document, const std::string& file, double factor) {
-    if (!document.contains("integrator") || !document["integrator"].contains("implicit_springs")) {
+    if (!document.contains("integrator") || !document["integrator"].contains("implicit_springs"))
         throw InputError(file + ": springs: expected a scene whose integrator is implicit_springs");
-    }
     nlohmann::json& springs = document["integrator"]["implicit_springs"];
     const scenes::ImplicitSpringsIntegrator standard;
     springs["stretch_stiffness"] = factor * springs.value("stretch_stiffness", standard.stretch_stiffness);
@@ -59,39 +58,38 @@ nlohmann::json value_at(const nlohmann::json& document, const std::string& path)
 
 }  // namespace
 
-PreparedScene prepare_scene(const Contender& contender, const nlohmann::json& document, const std::string& file,
-                            const KnobValues& knobs) {
-    check_knobs(contender, knobs);
-    PreparedScene prepared{.document = document, .knobs = KnobValues::object()};
-    const bool ours = contender.kind == ContenderKind::ours || contender.kind == ContenderKind::direct;
+PreparedScene prepare_scene(const ComparedMethod& method, const nlohmann::json& document, const std::string& file,
+                            const ParameterValues& parameters) {
+    check_parameters(method, parameters);
+    PreparedScene prepared{.document = document, .parameters = ParameterValues::object()};
+    const bool ours = method.kind == MethodKind::ours || method.kind == MethodKind::direct;
     if (ours) {
         fill_in_limiting(prepared.document);
-        for (const auto& [path, value] : contender.settings) set(prepared.document, path, value);
+        for (const auto& [path, value] : method.settings) set(prepared.document, path, value);
     } else {
         prepared.document.erase("strain_limiting");
     }
     // Those given first to last, and before them the standard ones.
-    KnobValues values = KnobValues::object();
-    for (const ContenderKnob& knob : contender.knobs) {
-        if (knob.standard) values[knob.name] = *knob.standard;
-    }
-    for (const auto& [name, value] : knobs.items()) values[name] = value;
+    ParameterValues values = ParameterValues::object();
+    for (const MethodParameter& parameter : method.parameters)
+        if (parameter.standard) values[parameter.name] = *parameter.standard;
+    for (const auto& [name, value] : parameters.items()) values[name] = value;
     for (const auto& [name, given] : values.items()) {
         const nlohmann::json value = tidy(given);
         if (name == "steps_per_frame") {
-            if (!value.is_number_integer()) throw InputError(contender.name + ": steps_per_frame must be whole");
+            if (!value.is_number_integer()) throw InputError(method.name + ": steps_per_frame must be whole");
             scenes::set_steps_per_frame(prepared.document, value.get<std::int64_t>());
-        } else if (contender.kind == ContenderKind::springs) {
+        } else if (method.kind == MethodKind::springs) {
             stiffen_springs(prepared.document, file, value.get<double>());
         } else if (ours) {
             set(prepared.document, name, value);
         }
-        prepared.knobs[name] = value;
+        prepared.parameters[name] = value;
     }
-    for (const ContenderKnob& knob : contender.knobs) {
-        if (!prepared.knobs.contains(knob.name)) prepared.knobs[knob.name] = value_at(prepared.document, knob.name);
-    }
-    prepared.knobs["steps_per_frame"] = prepared.document.value("steps_per_frame", 1);
+    for (const MethodParameter& parameter : method.parameters)
+        if (!prepared.parameters.contains(parameter.name))
+            prepared.parameters[parameter.name] = value_at(prepared.document, parameter.name);
+    prepared.parameters["steps_per_frame"] = prepared.document.value("steps_per_frame", 1);
     return prepared;
 }
 

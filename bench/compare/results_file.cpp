@@ -55,17 +55,14 @@ Json stopped_json(const MeasuredRun& run) {
                 {"stage", run.breakdown->stage},
                 {"what", run.breakdown->what}};
     }
-    if (run.timed_out) {
-        return {{"frame", run.frames.back().frame}, {"what", "no time left for another frame"}};
-    }
+    if (run.timed_out) return {{"frame", run.frames.back().frame}, {"what", "no time left for another frame"}};
     return nullptr;
 }
 
 Json frames_json(const std::vector<FrameDeviation>& deviation) {
     Json frames = Json::array();
-    for (const FrameDeviation& at : deviation) {
+    for (const FrameDeviation& at : deviation)
         frames.push_back({{"frame", at.frame}, {"rms", at.deviation.rms}, {"max", at.deviation.max}});
-    }
     return frames;
 }
 
@@ -126,9 +123,8 @@ Json machine_json(const std::optional<scenes::OpenClDevice>& device) {
     Json machine{{"processor", bench::processor_name()},
                  {"cores", std::thread::hardware_concurrency()},
                  {"opencl_device", nullptr}};
-    if (device) {
+    if (device)
         machine["opencl_device"] = {{"name", device->name}, {"platform", device->platform}, {"driver", device->driver}};
-    }
     return machine;
 }
 
@@ -175,10 +171,11 @@ void ResultsFile::add_scene(const SceneCase& scene) {
     document_["scenes"].push_back({{"name", scene.name}, {"file", scene.file}, {"document", scene.document}});
 }
 
-const Json* ResultsFile::find(const std::string& scene, const std::string& method, const KnobValues& knobs) const {
+const Json* ResultsFile::find(const std::string& scene, const std::string& method,
+                              const ParameterValues& parameters) const {
     for (const Json& run : document_["runs"]) {
         if (run.value("scene", "") == scene && run.value("method", "") == method &&
-            same(run.value("knobs", Json()), knobs)) {
+            same(run.value("parameters", Json()), parameters)) {
             return &run;
         }
     }
@@ -187,13 +184,12 @@ const Json* ResultsFile::find(const std::string& scene, const std::string& metho
 
 bool ResultsFile::has(const PlannedRun& run, const RunConditions& conditions,
                       const std::optional<DeviationPlan>& deviation) const {
-    const Json* found = find(run.scene->name, run.contender->name, run.prepared.knobs);
+    const Json* found = find(run.scene->name, run.method->name, run.prepared.parameters);
     if (found == nullptr || rounds_of(*found).size() < static_cast<std::size_t>(conditions.round)) return false;
-    if (found->value("status", "") == "timed_out" && found->value("run_seconds", 0.0) < conditions.run_seconds) {
+    if (found->value("status", "") == "timed_out" && found->value("run_seconds", 0.0) < conditions.run_seconds)
         return false;
-    }
     if (conditions.keep_frames && !found->contains("frame_max_edge_stretch")) return false;
-    if (conditions.profile && run.contender->kind == ContenderKind::ours &&
+    if (conditions.profile && run.method->kind == MethodKind::ours &&
         found->value("device_seconds_per_frame", Json()).is_null()) {
         return false;
     }
@@ -204,7 +200,7 @@ bool ResultsFile::has(const PlannedRun& run, const RunConditions& conditions,
 }
 
 double ResultsFile::integrator_seconds_without_limiter(const PlannedRun& run) const {
-    const Json* none = find(run.scene->name, "none", {{"steps_per_frame", run.prepared.knobs["steps_per_frame"]}});
+    const Json* none = find(run.scene->name, "none", {{"steps_per_frame", run.prepared.parameters["steps_per_frame"]}});
     return none == nullptr ? 0.0 : none->at("integrator_seconds_per_frame").at("median").get<double>();
 }
 
@@ -213,15 +209,15 @@ Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const 
     const scenes::RunSummary summary = scenes::summarize(measured.frames);
     // The limiter of stiff springs is their solve, as far as it takes longer than that of the soft ones.
     const std::vector<double> limiter_seconds =
-        run.contender->kind == ContenderKind::springs
+        run.method->kind == MethodKind::springs
             ? seconds(measured, &scenes::FrameReport::integrator_seconds, integrator_seconds_without_limiter(run))
             : seconds(measured, &scenes::FrameReport::filter_seconds);
     Json entry{
         {"scene", run.scene->name},
-        {"method", run.contender->name},
-        {"title", run.contender->title},
-        {"citation", run.contender->citation},
-        {"knobs", run.prepared.knobs},
+        {"method", run.method->name},
+        {"title", run.method->title},
+        {"citation", run.method->citation},
+        {"parameters", run.prepared.parameters},
         {"commit", commit_},
         {"device", measured.device},
         {"vertices", measured.vertices},
@@ -239,7 +235,7 @@ Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const 
         {"edge_stretch", {{"min", summary.min_edge_stretch}, {"max", summary.max_edge_stretch}}},
         {"principal_stretch", {{"min", measured.principal_stretch.min}, {"max", measured.principal_stretch.max}}},
         {"solves", summary.solves},
-        {"cg_iterations_per_solve", summary.cg_iterations_per_solve},
+        {"iterations_per_solve", summary.iterations_per_solve},
         {"deviation", deviation_json(measured, deviation,
                                      conditions.converged != nullptr ? conditions.converged->max_area_change : 0.0)},
         {"start_energy", scenes::to_json(measured.start_energy)},
@@ -251,7 +247,7 @@ Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const 
         entry["frame_max_edge_stretch"] = six_decimals(measured.frames, &scenes::FrameReport::max_edge_stretch);
     }
     for (Json& earlier : document_["runs"]) {
-        if (&earlier != find(run.scene->name, run.contender->name, run.prepared.knobs)) continue;
+        if (&earlier != find(run.scene->name, run.method->name, run.prepared.parameters)) continue;
         if (conditions.round > 1) {
             Json rounds = rounds_of(earlier);
             rounds.push_back(rounds_of(entry)[0]);

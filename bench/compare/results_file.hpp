@@ -43,7 +43,7 @@ public:
 
 private:
     const nlohmann::ordered_json* find(const std::string& scene, const std::string& method,
-                                       const KnobValues& knobs) const;
+                                       const ParameterValues& parameters) const;
     /// s, median of a frame's integration without a limiter: the run of `none` with as many steps; 0 where there is
     /// none.
     double integrator_seconds_without_limiter(const PlannedRun& run) const;

@@ -18,7 +18,7 @@ using scenes::Range;
 using scenes::SceneObject;
 using scenes::SceneValue;
 
-constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t max_count = std::numeric_limits<std::int32_t>::max();
 
 SceneCase as_case(std::string name, const std::filesystem::path& file, nlohmann::json document) {
     (void)scenes::parse_scene(document, file.string());  // wrong values should be known before anything runs
@@ -36,9 +36,8 @@ SceneCase parse_case(const SceneValue& value, const std::filesystem::path& folde
         if (!changes.json->is_object()) changes.expected("an object of scene paths and values");
         for (const auto& [path, changed] : changes.json->items()) {
             nlohmann::json to = changed;
-            if (path == "mesh.file" && to.is_string()) {
+            if (path == "mesh.file" && to.is_string())
                 to = std::filesystem::absolute(folder / to.get<std::string>()).string();
-            }
             scenes::override_scene(document, path + "=" + to.dump());
         }
     }
@@ -47,27 +46,28 @@ SceneCase parse_case(const SceneValue& value, const std::filesystem::path& folde
     return as_case(name, file, std::move(document));
 }
 
-ContenderRuns parse_method(const SceneValue& value) {
+MethodRuns parse_method(const SceneValue& value) {
     if (value.json->is_string()) {
-        const Contender& contender = find_contender(value.text());
-        return {.contender = &contender, .knobs = standard_sweep(contender)};
+        const ComparedMethod& method = find_method(value.text());
+        return {.method = &method, .parameters = standard_sweep(method)};
     }
     SceneObject object(value);
     if (!object.has("name")) value.fail("name is missing, expected a method's");
-    const Contender& contender = find_contender(object.find("name").text());
-    ContenderRuns runs{.contender = &contender, .knobs = {}};
-    const SceneValue knobs = object.find("knobs");
+    const ComparedMethod& method = find_method(object.find("name").text());
+    MethodRuns runs{.method = &method, .parameters = {}};
+    const SceneValue parameters = object.find("parameters");
     object.refuse_other_keys();
-    if (knobs.json == nullptr) {
-        runs.knobs = standard_sweep(contender);
+    if (parameters.json == nullptr) {
+        runs.parameters = standard_sweep(method);
         return runs;
     }
-    if (!knobs.json->is_object()) knobs.expected("an object of knobs with a value or a list of values each");
-    runs.knobs = combinations(KnobValues(*knobs.json));
+    if (!parameters.json->is_object())
+        parameters.expected("an object of parameters with a value or a list of values each");
+    runs.parameters = combinations(ParameterValues(*parameters.json));
     try {
-        for (const KnobValues& combination : runs.knobs) check_knobs(contender, combination);
+        for (const ParameterValues& combination : runs.parameters) check_parameters(method, combination);
     } catch (const InputError& error) {
-        knobs.fail(error.what());
+        parameters.fail(error.what());
     }
     return runs;
 }
@@ -75,13 +75,11 @@ ContenderRuns parse_method(const SceneValue& value) {
 DeviationSettings parse_deviation(SceneObject object) {
     DeviationSettings settings;
     ConvergedSettings& converged = settings.converged;
-    if (const SceneValue frames = object.find("frames"); frames.json != nullptr) {
-        for (const SceneValue& frame : frames.entries()) {
-            settings.frames.push_back(static_cast<int>(frame.integer(0, kMaxCount)));
-        }
-    }
+    if (const SceneValue frames = object.find("frames"); frames.json != nullptr)
+        for (const SceneValue& frame : frames.entries())
+            settings.frames.push_back(static_cast<int>(frame.integer(0, max_count)));
     converged.step_factor = static_cast<int>(object.integer("step_factor", converged.step_factor, 1, 10'000));
-    converged.sub_steps = static_cast<int>(object.integer("sub_steps", converged.sub_steps, 0, kMaxCount));
+    converged.sub_steps = static_cast<int>(object.integer("sub_steps", converged.sub_steps, 0, max_count));
     converged.regularization = object.number("regularization", converged.regularization, Range::at_least(1.0));
     converged.tolerance = object.number("tolerance", converged.tolerance, Range::from_to_below(0.0, 1.0));
     converged.target_area_change =
@@ -108,21 +106,14 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
     const nlohmann::json document = read_json(file);
     SceneObject object({&document, file.string(), ""});
     Study study;
-    if (object.has("scenes")) {
-        for (const SceneValue& scene : object.find("scenes").entries()) {
+    if (object.has("scenes"))
+        for (const SceneValue& scene : object.find("scenes").entries())
             study.scenes.push_back(parse_case(scene, file.parent_path(), overrides));
-        }
-    }
-    if (object.has("methods")) {
-        for (const SceneValue& method : object.find("methods").entries()) {
-            study.methods.push_back(parse_method(method));
-        }
-    }
+    if (object.has("methods"))
+        for (const SceneValue& method : object.find("methods").entries()) study.methods.push_back(parse_method(method));
     if (object.has("deviation")) study.deviation = parse_deviation(SceneObject(object.find("deviation")));
-    if (object.has("run_seconds")) {
-        study.run_seconds = object.find("run_seconds").number(Range::above(0.0));
-    }
-    study.rounds = static_cast<int>(object.integer("rounds", study.rounds, 1, kMaxRounds));
+    if (object.has("run_seconds")) study.run_seconds = object.find("run_seconds").number(Range::above(0.0));
+    study.rounds = static_cast<int>(object.integer("rounds", study.rounds, 1, max_rounds));
     if (const SceneValue keep = object.find("keep_frames"); keep.json != nullptr) {
         if (!keep.json->is_boolean()) keep.expected("true or false");
         study.keep_frames = keep.json->get<bool>();
@@ -131,14 +122,13 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
     return study;
 }
 
-std::vector<ContenderRuns> standard_methods(const std::vector<std::string>& names) {
-    std::vector<ContenderRuns> runs;
-    if (names.empty()) {
-        for (const Contender& contender : contenders()) runs.push_back({&contender, standard_sweep(contender)});
-    }
+std::vector<MethodRuns> standard_methods(const std::vector<std::string>& names) {
+    std::vector<MethodRuns> runs;
+    if (names.empty())
+        for (const ComparedMethod& method : compared_methods()) runs.push_back({&method, standard_sweep(method)});
     for (const std::string& name : names) {
-        const Contender& contender = find_contender(name);
-        runs.push_back({&contender, standard_sweep(contender)});
+        const ComparedMethod& method = find_method(name);
+        runs.push_back({&method, standard_sweep(method)});
     }
     return runs;
 }

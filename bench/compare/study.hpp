@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "compare/contenders.hpp"
+#include "compare/compared_methods.hpp"
 #include "compare/converged_solution.hpp"
 
 #include <filesystem>
@@ -11,10 +11,10 @@
 
 namespace apsl::compare {
 
-/// One contender with every combination of its knobs' values that is to be run.
-struct ContenderRuns {
-    const Contender* contender;
-    std::vector<KnobValues> knobs;
+/// One method with every combination of its parameters' values that is to be run.
+struct MethodRuns {
+    const ComparedMethod* method;
+    std::vector<ParameterValues> parameters;
 };
 
 /// Where the converged solution is made and looked at.
@@ -24,12 +24,12 @@ struct DeviationSettings {
 };
 
 /// Of Study::rounds.
-constexpr int kMaxRounds = 1000;
+constexpr int max_rounds = 1000;
 
 /// What is to be compared: docs/study.schema.json.
 struct Study {
     std::vector<SceneCase> scenes;
-    std::vector<ContenderRuns> methods;
+    std::vector<MethodRuns> methods;
     std::optional<DeviationSettings> deviation;
     std::optional<double> run_seconds;
     int rounds = 1;  ///< times that all runs are made, in turn
@@ -43,7 +43,7 @@ SceneCase read_scene_case(const std::filesystem::path& file, const std::vector<s
 /// expected.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
-/// The contenders by these names, all where there are none, each with its standard sweep. Throws InputError.
-std::vector<ContenderRuns> standard_methods(const std::vector<std::string>& names);
+/// The methods by these names, all where there are none, each with its standard sweep. Throws InputError.
+std::vector<MethodRuns> standard_methods(const std::vector<std::string>& names);
 
 }  // namespace apsl::compare

@@ -2,7 +2,7 @@
 //
 // Bytes each kernel must move at least once, counted from the layouts (32-bit, strides of 3). Caches are taken to be
 // perfect: what several triangles share (a position, a vertex's force, a neighbour's residual) counts once. Steps are
-// whole, as the benchmarks take them; what a walk moves besides, the kernels' headers say.
+// whole, as the benchmarks take them; what small steps move besides, the kernels' headers say.
 #pragma once
 
 #include <array>
@@ -24,20 +24,20 @@ struct Traffic {
     double per_triangle_saved_first = 0;  ///< what the first iteration of a solve need not read
 };
 
-// An index, an offset or a float is 4 bytes; predicted position with inverse mass (float4) 16; a caller's vector 12;
+// An index, an offset or a float is 4 bytes; position with inverse mass (float4) 16; a caller's vector 12;
 // the record of three corner gradients 32, of which the gradients alone 24; the corners of a triangle, as its vertices
 // list them, 12. Names as in the kernels' arguments.
 constexpr std::array traffic_table{
-    // vertex_order, position, velocity, inverse mass read; predicted written
+    // vertex_order, position, velocity, inverse mass read; moved written
     Traffic{"predict_positions", 48, 0, 0},
     // triangle_order, rest area read, ordered rest area written
     Traffic{"order_triangle_values", 0, 12, 0},
-    // predicted; indices 12, ordered rest area read; record, residual, damped_diagonal written
+    // moved; indices 12, ordered rest area read; record, residual, scaled_diagonal written
     Traffic{"assemble_gradients", 16, 56, 0},
-    // predicted, motion; indices 12, ordered rest area read, start error written
+    // moved, motion; indices 12, ordered rest area read, start error written
     Traffic{"measure_step", 32, 20, 0},
-    // vertex_order, motion, velocity read; predicted, motion, correction written
-    Traffic{"start_walk", 80, 0, 0},
+    // vertex_order, motion, velocity read; moved, motion, total_correction written
+    Traffic{"start_small_steps", 80, 0, 0},
     // corner offset, bound written; corners 12, gradients 24 read
     Traffic{"bound_vertices", 8, 36, 0},
     // corner offset, patch_vertices; corners 12, gradients 24, local_triangles 6, right-hand side, y and the y before
@@ -50,14 +50,14 @@ constexpr std::array traffic_table{
     // corner offset, patch_vertices; corners 12, record, residual, local_triangles 6 read, product written. The rims of
     // the patches, which several patches read, are counted once.
     Traffic{"matrix_free_apply_dot", 8, 58, 0},
-    // residual, direction, direction_product, pressure read and written, product, damped_diagonal read; the first
+    // residual, direction, direction_product, pressure read and written, product, scaled_diagonal read; the first
     // iteration finds no direction, direction_product and pressure to read
     Traffic{"cg_update", 0, 40, 0, 12},
-    // corner offset, predicted read and written; corners 12, gradients 24, pressure read
+    // corner offset, moved read and written; corners 12, gradients 24, pressure read
     Traffic{"gather_displacements", 36, 40, 0},
-    // predicted; indices 12, ordered rest area read
+    // moved; indices 12, ordered rest area read
     Traffic{"measure_area_change", 16, 16, 0},
-    // vertex_order, predicted, position, velocity read, velocity written
+    // vertex_order, moved, position, velocity read, velocity written
     Traffic{"update_velocities", 56, 0, 0},
 };
 

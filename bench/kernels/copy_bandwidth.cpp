@@ -34,15 +34,16 @@ double copy_bandwidth(const Device& device, std::size_t array_bytes) {
     const cl_context context = device.context.get();
     cl_int status = CL_SUCCESS;
     const char* text = source;
-    const OwnedProgram program(clCreateProgramWithSource(context, 1, &text, nullptr, &status));
+    const host::ProgramHandle program(clCreateProgramWithSource(context, 1, &text, nullptr, &status));
     check(status, "creating the triad");
     check(clBuildProgram(program.get(), 1, &device.id, "-cl-std=CL1.2", nullptr, nullptr), "building the triad");
-    const OwnedKernel kernel(clCreateKernel(program.get(), "triad", &status));
+    const host::KernelHandle kernel(clCreateKernel(program.get(), "triad", &status));
     check(status, "creating the triad");
 
     const auto count = static_cast<cl_uint>(array_bytes / sizeof(cl_float4));
     const std::vector<float> numbers(std::size_t{count} * 4, 1.0f);
-    const std::array<OwnedBuffer, 3> buffers{device.upload(numbers), device.upload(numbers), device.upload(numbers)};
+    const std::array<host::BufferHandle, 3> buffers{device.upload(numbers), device.upload(numbers),
+                                                    device.upload(numbers)};
     for (cl_uint n = 0; n < 3; ++n) {
         const cl_mem buffer = buffers[n].get();
         check(clSetKernelArg(kernel.get(), n, sizeof buffer, &buffer), "setting an argument");

@@ -39,8 +39,8 @@ struct Direct {
                 area_excess[static_cast<Eigen::Index>(a)] = geometry[a].area - cloth.rest_areas[a];
             lambda = factors.solve(area_excess);
             reference::displacements<float>(*cloth.topology, geometry, cloth.inverse_masses,
-                                            std::span(lambda.data(), geometry.size()), correction);
-            for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += correction[n];
+                                            std::span(lambda.data(), geometry.size()), total_correction);
+            for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += total_correction[n];
         }
         std::vector<float> velocities(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) velocities[n] = (moved[n] - start[n]) / parameters.time_step;
@@ -54,7 +54,7 @@ struct Direct {
     Eigen::SparseMatrix<float> columns;
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<float>> factors;
     reference::TriangleVector<float> area_excess, lambda;
-    std::vector<float> correction;
+    std::vector<float> total_correction;
 };
 
 }  // namespace

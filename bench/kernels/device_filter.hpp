@@ -30,7 +30,7 @@ private:
 
     const Device& device_;
     std::size_t velocity_bytes_;
-    OwnedBuffer positions_, velocities_, inverse_masses_, rest_areas_;
+    host::BufferHandle positions_, velocities_, inverse_masses_, rest_areas_;
     StrainLimiter limiter_;
 };
 

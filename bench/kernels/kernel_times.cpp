@@ -11,15 +11,16 @@ namespace {
 
 /// The part of the filter that a kernel belongs to.
 std::string phase_of(const std::string& kernel) {
-    static const std::array<std::pair<const char*, std::vector<std::string>>, 7> phases{{
+    static const std::array<std::pair<const char*, std::vector<std::string>>, 8> phases{{
         {"matrix and right-hand side", {"bound_vertices", "assemble_gradients", "assemble_pressure_csr"}},
         {"CG: apply", {"matrix_free_apply_dot", "csr_spmv_dot"}},
         {"CG: vectors", {"cg_update"}},
+        {"CG: warm start and last iterations", {"measure_guess", "start_from_guess", "finish_solve"}},
         {"Chebyshev", {"chebyshev_step"}},
         {"displacements", {"gather_displacements"}},
         {"begin and end",
          {"set_parameters", "predict_positions", "order_triangle_values", "measure_step", "judge_whole_step",
-          "start_walk", "begin_solve", "measure_area_change", "end_call", "update_velocities"}},
+          "start_small_steps", "begin_solve", "measure_area_change", "end_call", "update_velocities"}},
         {"all in one launch", {"filter_in_one_group"}},
     }};
     for (const auto& [phase, kernels] : phases)

@@ -1,20 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "methods/continuum_strain_limiting.hpp"
-#include "methods/edge_limits_gauss_seidel.hpp"
-#include "methods/edge_limits_jacobi.hpp"
-#include "methods/fast_projection.hpp"
-#include "methods/hierarchical_constraints.hpp"
-#include "methods/hierarchical_pbd.hpp"
-#include "methods/method.hpp"
-#include "methods/nonconforming_edge_midpoint.hpp"
-#include "methods/pbd_area_colored.hpp"
-#include "methods/pbd_area_gauss_seidel.hpp"
-#include "methods/pbd_area_jacobi.hpp"
-#include "methods/pbd_edges.hpp"
-#include "methods/ring_area.hpp"
-#include "methods/strain_based_dynamics.hpp"
-#include "methods/xpbd_area.hpp"
-#include "methods/xpbd_edges.hpp"
+#include "methods/all_methods.hpp"
 
 #include <apsl/error.hpp>
 
@@ -55,15 +40,16 @@ void check_cloth(const Cloth& cloth) {
     }
 }
 
-std::vector<double> knob_values(const MethodInfo& info, std::span<const Knob> knobs) {
+std::vector<double> parameter_values(const MethodInfo& info, std::span<const Parameter> parameters) {
     std::vector<double> values;
-    for (const KnobInfo& knob : info.knobs) values.push_back(knob.standard);
-    for (const Knob& given : knobs) {
-        const auto known = std::find_if(info.knobs.begin(), info.knobs.end(),
-                                        [&](const KnobInfo& knob) { return knob.name == given.name; });
+    for (const ParameterInfo& parameter : info.parameters) values.push_back(parameter.standard);
+    for (const Parameter& given : parameters) {
+        const auto known = std::find_if(info.parameters.begin(), info.parameters.end(),
+                                        [&](const ParameterInfo& parameter) { return parameter.name == given.name; });
         std::ostringstream message;
-        if (known == info.knobs.end()) {
-            message << info.name << ": unknown knob \"" << given.name << "\", expected one of " << names_of(info.knobs);
+        if (known == info.parameters.end()) {
+            message << info.name << ": unknown parameter \"" << given.name << "\", expected one of "
+                    << names_of(info.parameters);
             refuse(message);
         }
         if (!(std::isfinite(given.value) && given.value >= known->least)) {
@@ -71,7 +57,7 @@ std::vector<double> knob_values(const MethodInfo& info, std::span<const Knob> kn
                     << ", expected a finite number >= " << known->least;
             refuse(message);
         }
-        values[static_cast<std::size_t>(known - info.knobs.begin())] = given.value;
+        values[static_cast<std::size_t>(known - info.parameters.begin())] = given.value;
     }
     return values;
 }
@@ -100,7 +86,7 @@ std::span<const MethodInfo> all_methods() {
     return methods;
 }
 
-std::unique_ptr<Method> make_method(std::string_view name, const Cloth& cloth, std::span<const Knob> knobs) {
+std::unique_ptr<Method> make_method(std::string_view name, const Cloth& cloth, std::span<const Parameter> parameters) {
     const std::span<const MethodInfo> methods = all_methods();
     const auto info =
         std::find_if(methods.begin(), methods.end(), [&](const MethodInfo& method) { return method.name == name; });
@@ -110,7 +96,7 @@ std::unique_ptr<Method> make_method(std::string_view name, const Cloth& cloth, s
         refuse(message);
     }
     check_cloth(cloth);
-    return info->make(cloth, knob_values(*info, knobs));
+    return info->make(cloth, parameter_values(*info, parameters));
 }
 
 }  // namespace apsl::methods

@@ -14,11 +14,11 @@
 // with c the centre of mass. One pinned corner: c is that corner. Two: c is their middle, R follows them alone.
 // Triangles take turns in colours (Gauss–Seidel). A stretch below 10⁻³ has lost its direction and is left to the rest.
 
-#include "methods/continuum_strain_limiting.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/color_sweeps.hpp"
 #include "methods/framed_triangle.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <Eigen/Geometry>
 
@@ -133,19 +133,19 @@ private:
     float limit_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_continuum_strain_limiting(const Cloth& cloth, std::span<const double> values) {
     const int iterations = whole_number("iterations", values[0]);
     require_between("limit", values[1], 0.0, 1.0);
     return std::make_unique<ContinuumStrainLimiting>(cloth, iterations, values[1]);
 }
 
+}  // namespace
+
 MethodInfo continuum_strain_limiting_info() {
     return {.name = "continuum_strain_limiting",
             .title = "Continuum-based strain limiting",
             .citation = "Thomaszewski et al. 2009",
-            .knobs = {iterations_knob(20), {"limit", 0.01, 0.0, {0.01, 0.0}}},
+            .parameters = {iterations_parameter(20), {"limit", 0.01, 0.0, {0.01, 0.0}}},
             .make = make_continuum_strain_limiting};
 }
 

@@ -11,11 +11,11 @@
 // X. Provot: Deformation constraints in a mass-spring model to describe rigid cloth behavior. Graphics Interface 1995.
 // R. Bridson, S. Marino, R. Fedkiw: Simulation of clothing with folds and wrinkles. Symposium on Computer Animation
 // 2003.
-#include "methods/edge_limits_gauss_seidel.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/color_sweeps.hpp"
 #include "methods/edge_constraints.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <algorithm>
 
@@ -51,19 +51,19 @@ private:
     float least_, greatest_;  // of the rest length
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_edge_limits_gauss_seidel(const Cloth& cloth, std::span<const double> values) {
     const int iterations = whole_number("iterations", values[0]);
     require_between("limit", values[1], 0.0, 1.0);
     return std::make_unique<EdgeLimitsGaussSeidel>(cloth, iterations, values[1]);
 }
 
+}  // namespace
+
 MethodInfo edge_limits_gauss_seidel_info() {
     return {.name = "edge_limits_gauss_seidel",
             .title = "Edge limits, Gauss–Seidel",
             .citation = "Provot 1995; Bridson et al. 2003",
-            .knobs = {iterations_knob(20), {"limit", 0.1, 0.0, {0.1, 0.01}}},
+            .parameters = {iterations_parameter(20), {"limit", 0.1, 0.0, {0.1, 0.01}}},
             .make = make_edge_limits_gauss_seidel};
 }
 

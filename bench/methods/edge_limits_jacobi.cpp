@@ -15,11 +15,11 @@
 // 2003.
 // R. Tonge, F. Benevolenski, A. Voroshilov: Mass splitting for jitter-free parallel rigid body simulation. ACM
 // Transactions on Graphics 31(4), 2012.
-#include "methods/edge_limits_jacobi.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/color_sweeps.hpp"
 #include "methods/edge_constraints.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <algorithm>
 
@@ -105,19 +105,19 @@ private:
     float least_, greatest_;  // of the rest length
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_edge_limits_jacobi(const Cloth& cloth, std::span<const double> values) {
     const int iterations = whole_number("iterations", values[0]);
     require_between("limit", values[1], 0.0, 1.0);
     return std::make_unique<EdgeLimitsJacobi>(cloth, iterations, values[1]);
 }
 
+}  // namespace
+
 MethodInfo edge_limits_jacobi_info() {
     return {.name = "edge_limits_jacobi",
             .title = "Edge limits, Jacobi",
             .citation = "Provot 1995; Bridson et al. 2003",
-            .knobs = {iterations_knob(20), {"limit", 0.1, 0.0, {0.1, 0.01}}},
+            .parameters = {iterations_parameter(20), {"limit", 0.1, 0.0, {0.1, 0.01}}},
             .make = make_edge_limits_jacobi};
 }
 

@@ -12,9 +12,9 @@
 // alone; `quads` = 1 does likewise by leaving out an edge wherever two triangles pair up to a quad, longest edges
 // first.
 
-#include "methods/fast_projection.hpp"
+#include "methods/all_methods.hpp"
 
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -205,8 +205,6 @@ private:
     double regularization_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_fast_projection(const Cloth& cloth, std::span<const double> values) {
     const int iterations = whole_number("iterations", values[0]);
     require_between("quads", values[3], 0.0, 1.0);
@@ -214,14 +212,16 @@ std::unique_ptr<Method> make_fast_projection(const Cloth& cloth, std::span<const
     return std::make_unique<FastProjection>(cloth, iterations, values[1], values[2], quads);
 }
 
+}  // namespace
+
 MethodInfo fast_projection_info() {
     return {.name = "fast_projection",
             .title = "Fast projection",
             .citation = "Goldenthal et al. 2007",
-            .knobs = {{"iterations", 5.0, 1.0, {1, 2, 3, 5, 10}},
-                      {"tolerance", 1e-4, 0.0, {1e-4}},
-                      {"regularization", 1e-4, 0.0, {1e-4}},
-                      {"quads", 0.0, 0.0, {0}}},
+            .parameters = {{"iterations", 5.0, 1.0, {1, 2, 3, 5, 10}},
+                           {"tolerance", 1e-4, 0.0, {1e-4}},
+                           {"regularization", 1e-4, 0.0, {1e-4}},
+                           {"quads", 0.0, 0.0, {0}}},
             .make = make_fast_projection};
 }
 

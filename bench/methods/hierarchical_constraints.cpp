@@ -12,11 +12,11 @@
 //     as they are on flat cloth;
 //   - what the level's vertices have moved is interpolated to the vertices that the next finer level adds;
 //   - edges of coarse levels act only when too long: one that is too short stands for a fold.
-#include "methods/hierarchical_constraints.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/coarsening.hpp"
 #include "methods/color_sweeps.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -193,21 +193,21 @@ private:
     int passes_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_hierarchical_constraints(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<HierarchicalConstraints>(cloth, whole_number("iterations", values[0]),
                                                      whole_number("levels", values[1]),
                                                      whole_number("passes", values[2]));
 }
 
+}  // namespace
+
 MethodInfo hierarchical_constraints_info() {
     return {.name = "hierarchical_constraints",
             .title = "Hierarchical constraint dynamics",
             .citation = "House et al. 1996",
-            .knobs = {{"iterations", 10.0, 1.0, {10}},
-                      {"levels", 6.0, 1.0, {6}},
-                      {"passes", 2.0, 1.0, {1, 2, 5, 10, 20, 40}}},
+            .parameters = {{"iterations", 10.0, 1.0, {10}},
+                           {"levels", 6.0, 1.0, {6}},
+                           {"passes", 2.0, 1.0, {1, 2, 5, 10, 20, 40}}},
             .make = make_hierarchical_constraints};
 }
 

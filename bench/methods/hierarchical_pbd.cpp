@@ -9,12 +9,12 @@
 // Every stiffness is 1.
 //
 // M. Müller: Hierarchical Position Based Dynamics. VRIPHYS 2008.
-#include "methods/hierarchical_pbd.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/coarsening.hpp"
 #include "methods/color_sweeps.hpp"
 #include "methods/edge_constraints.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 namespace apsl::methods {
 namespace {
@@ -73,18 +73,18 @@ private:
     int iterations_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_hierarchical_pbd(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<HierarchicalPbd>(cloth, whole_number("iterations", values[0]),
                                              whole_number("levels", values[1]));
 }
 
+}  // namespace
+
 MethodInfo hierarchical_pbd_info() {
     return {.name = "hierarchical_pbd",
             .title = "Hierarchical PBD",
             .citation = "Müller 2008",
-            .knobs = {iterations_knob(10), {"levels", 6.0, 1.0, {6}}},
+            .parameters = {iterations_parameter(10), {"levels", 6.0, 1.0, {6}}},
             .make = make_hierarchical_pbd};
 }
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-/// The literature's rivals: for comparison only, never installed.
+/// The literature's baselines: for comparison only, never installed.
 namespace apsl::methods {
 
 /// What a method may know of a cloth before it starts. Copied from where needed: none of it changes during a run.
@@ -25,12 +25,12 @@ struct Cloth {
 };
 
 /// One of a method's quality settings, by the name that its table entry gives it.
-struct Knob {
+struct Parameter {
     std::string name;
     double value = 0.0;
 };
 
-/// A limiter without a memory: what it holds between calls follows from cloth and knobs alone.
+/// A limiter without a memory: what it holds between calls follows from cloth and parameters alone.
 class Method {
 public:
     virtual ~Method() = default;
@@ -40,8 +40,8 @@ public:
     virtual void project(std::span<Eigen::Vector3f> positions) = 0;
 };
 
-/// A knob, the value it has where none is given, and the values of the standard sweep, from coarse to fine.
-struct KnobInfo {
+/// A parameter, the value it has where none is given, and the values of the standard sweep, from coarse to fine.
+struct ParameterInfo {
     std::string name;
     double standard = 0.0;
     double least = 0.0;
@@ -52,15 +52,15 @@ struct MethodInfo {
     std::string name;      ///< as in `apsl compare --methods`: pbd_edges
     std::string title;     ///< on charts: PBD edges
     std::string citation;  ///< Müller et al. 2007
-    std::vector<KnobInfo> knobs;
-    /// `values`: one for each of `knobs`, in their order.
+    std::vector<ParameterInfo> parameters;
+    /// `values`: one for each of `parameters`, in their order.
     std::function<std::unique_ptr<Method>(const Cloth& cloth, std::span<const double> values)> make;
 };
 
-/// All rivals. A scene's own integrator without any limiter is not among them.
+/// All baselines. A scene's own integrator without any limiter is not among them.
 std::span<const MethodInfo> all_methods();
 
 /// Throws Error(invalid_argument) naming what is unknown (with the known names) or out of range.
-std::unique_ptr<Method> make_method(std::string_view name, const Cloth& cloth, std::span<const Knob> knobs);
+std::unique_ptr<Method> make_method(std::string_view name, const Cloth& cloth, std::span<const Parameter> parameters);
 
 }  // namespace apsl::methods

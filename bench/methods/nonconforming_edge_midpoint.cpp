@@ -20,10 +20,10 @@
 // A midpoint has a third of its triangles' masses; a triangle's mass is its area times the density that its free
 // corners' masses tell. With vertex masses lumped the same way, step 3 keeps momentum. Midpoints between pins do not
 // move.
-#include "methods/nonconforming_edge_midpoint.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/color_sweeps.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <array>
 #include <cmath>
@@ -203,18 +203,18 @@ private:
     int passes_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_nonconforming_edge_midpoint(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<NonconformingEdgeMidpoint>(cloth, whole_number("iterations", values[0]),
                                                        whole_number("passes", values[1]));
 }
 
+}  // namespace
+
 MethodInfo nonconforming_edge_midpoint_info() {
     return {.name = "nonconforming_edge_midpoint",
             .title = "Nonconforming edge midpoints",
             .citation = "Bender et al. 2011",
-            .knobs = {iterations_knob(20), {"passes", 2.0, 1.0, {2}}},
+            .parameters = {iterations_parameter(20), {"passes", 2.0, 1.0, {2}}},
             .make = make_nonconforming_edge_midpoint};
 }
 

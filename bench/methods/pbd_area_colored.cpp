@@ -6,11 +6,11 @@
 // Image Representation 18(2), 2007: Section 3.3.
 // M. Fratarcangeli, V. Tibaldo, F. Pellacini: Vivace: a practical Gauss–Seidel method for stable soft body dynamics.
 // ACM Transactions on Graphics 35(6), 2016: graph coloring for parallel Gauss–Seidel.
-#include "methods/pbd_area_colored.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/area_constraints.hpp"
 #include "methods/color_sweeps.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 namespace apsl::methods {
 namespace {
@@ -33,17 +33,17 @@ private:
     int iterations_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_pbd_area_colored(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<PbdAreaColored>(cloth, whole_number("iterations", values[0]));
 }
+
+}  // namespace
 
 MethodInfo pbd_area_colored_info() {
     return {.name = "pbd_area_colored",
             .title = "PBD areas, colored Gauss–Seidel",
             .citation = "Müller et al. 2007; Fratarcangeli et al. 2016",
-            .knobs = {iterations_knob(20)},
+            .parameters = {iterations_parameter(20)},
             .make = make_pbd_area_colored};
 }
 

@@ -8,10 +8,10 @@
 //
 // M. Müller, B. Heidelberger, M. Hennix, J. Ratcliff: Position based dynamics. Journal of Visual Communication and
 // Image Representation 18(2), 2007: Section 3.3.
-#include "methods/pbd_area_gauss_seidel.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/area_constraints.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 namespace apsl::methods {
 namespace {
@@ -31,17 +31,17 @@ private:
     int iterations_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_pbd_area_gauss_seidel(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<PbdAreaGaussSeidel>(cloth, whole_number("iterations", values[0]));
 }
+
+}  // namespace
 
 MethodInfo pbd_area_gauss_seidel_info() {
     return {.name = "pbd_area_gauss_seidel",
             .title = "PBD areas, Gauss–Seidel",
             .citation = "Müller et al. 2007",
-            .knobs = {iterations_knob(20)},
+            .parameters = {iterations_parameter(20)},
             .make = make_pbd_area_gauss_seidel};
 }
 

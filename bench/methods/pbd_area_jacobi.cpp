@@ -14,11 +14,11 @@
 // Image Representation 18(2), 2007: Section 3.3.
 // R. Tonge, F. Benevolenski, A. Voroshilov: Mass splitting for jitter-free parallel rigid body simulation. ACM
 // Transactions on Graphics 31(4), 2012.
-#include "methods/pbd_area_jacobi.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/area_constraints.hpp"
 #include "methods/color_sweeps.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 namespace apsl::methods {
 namespace {
@@ -76,17 +76,17 @@ private:
     int iterations_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_pbd_area_jacobi(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<PbdAreaJacobi>(cloth, whole_number("iterations", values[0]));
 }
+
+}  // namespace
 
 MethodInfo pbd_area_jacobi_info() {
     return {.name = "pbd_area_jacobi",
             .title = "PBD areas, Jacobi",
             .citation = "Müller et al. 2007; Tonge et al. 2012",
-            .knobs = {iterations_knob(20)},
+            .parameters = {iterations_parameter(20)},
             .make = make_pbd_area_jacobi};
 }
 

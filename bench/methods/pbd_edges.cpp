@@ -9,11 +9,11 @@
 //
 // M. Müller, B. Heidelberger, M. Hennix, J. Ratcliff: Position based dynamics. Journal of Visual Communication and
 // Image Representation 18(2), 2007: Section 3.3.
-#include "methods/pbd_edges.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/color_sweeps.hpp"
 #include "methods/edge_constraints.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <cmath>
 
@@ -47,19 +47,19 @@ private:
     float stiffness_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_pbd_edges(const Cloth& cloth, std::span<const double> values) {
     const int iterations = whole_number("iterations", values[0]);
     require_between("stiffness", values[1], 0.0, 1.0);
     return std::make_unique<PbdEdges>(cloth, iterations, values[1]);
 }
 
+}  // namespace
+
 MethodInfo pbd_edges_info() {
     return {.name = "pbd_edges",
             .title = "PBD edges",
             .citation = "Müller et al. 2007",
-            .knobs = {iterations_knob(20), {"stiffness", 1.0, 0.0, {1.0}}},
+            .parameters = {iterations_parameter(20), {"stiffness", 1.0, 0.0, {1.0}}},
             .make = make_pbd_edges};
 }
 

@@ -14,11 +14,11 @@
 // Transactions on Graphics 26(3), 2007.
 // M. Müller, B. Heidelberger, M. Hennix, J. Ratcliff: Position based dynamics. Journal of Visual Communication and
 // Image Representation 18(2), 2007: Section 3.3.
-#include "methods/ring_area.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/area_constraints.hpp"
 #include "methods/color_sweeps.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <algorithm>
 
@@ -112,17 +112,17 @@ private:
     int iterations_;
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_ring_area(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<RingArea>(cloth, whole_number("iterations", values[0]));
 }
+
+}  // namespace
 
 MethodInfo ring_area_info() {
     return {.name = "ring_area",
             .title = "One-ring areas",
             .citation = "after Irving et al. 2007",
-            .knobs = {iterations_knob(20)},
+            .parameters = {iterations_parameter(20)},
             .make = make_ring_area};
 }
 

@@ -14,12 +14,12 @@
 // area and shear vanish where a triangle has no area and where f₁ and f₂ are parallel, so that steps would grow without
 // bound, denominators stay what they are at a third of the rest area and at sin(f₁, f₂) = 1/3.
 
-#include "methods/strain_based_dynamics.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/area_constraints.hpp"
 #include "methods/color_sweeps.hpp"
 #include "methods/framed_triangle.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 #include <Eigen/Geometry>
 
@@ -146,8 +146,6 @@ private:
 
 constexpr const char* source = "Müller et al. 2014";
 
-}  // namespace
-
 std::unique_ptr<Method> make_strain_based_dynamics_strain(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<Strain>(cloth, whole_number("iterations", values[0]));
 }
@@ -156,11 +154,13 @@ std::unique_ptr<Method> make_strain_based_dynamics_area(const Cloth& cloth, std:
     return std::make_unique<Area>(cloth, whole_number("iterations", values[0]));
 }
 
+}  // namespace
+
 MethodInfo strain_based_dynamics_strain_info() {
     return {.name = "strain_based_dynamics_strain",
             .title = "Strain based dynamics, strain",
             .citation = source,
-            .knobs = {iterations_knob(20)},
+            .parameters = {iterations_parameter(20)},
             .make = make_strain_based_dynamics_strain};
 }
 
@@ -168,7 +168,7 @@ MethodInfo strain_based_dynamics_area_info() {
     return {.name = "strain_based_dynamics_area",
             .title = "Strain based dynamics, area",
             .citation = source,
-            .knobs = {iterations_knob(20)},
+            .parameters = {iterations_parameter(20)},
             .make = make_strain_based_dynamics_area};
 }
 

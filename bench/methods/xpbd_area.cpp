@@ -9,11 +9,11 @@
 //
 // M. Macklin, M. Müller, N. Chentanez: XPBD: position-based simulation of compliant constrained dynamics. Motion in
 // Games 2016: Eq. (17), (18) and Algorithm 1.
-#include "methods/xpbd_area.hpp"
+#include "methods/all_methods.hpp"
 
 #include "methods/area_constraints.hpp"
 #include "methods/color_sweeps.hpp"
-#include "methods/knob_values.hpp"
+#include "methods/parameter_values.hpp"
 
 namespace apsl::methods {
 namespace {
@@ -53,17 +53,17 @@ private:
     float compliance_;  // m²/kg, α̃
 };
 
-}  // namespace
-
 std::unique_ptr<Method> make_xpbd_area(const Cloth& cloth, std::span<const double> values) {
     return std::make_unique<XpbdArea>(cloth, whole_number("iterations", values[0]), values[1]);
 }
+
+}  // namespace
 
 MethodInfo xpbd_area_info() {
     return {.name = "xpbd_area",
             .title = "XPBD areas",
             .citation = "Macklin et al. 2016",
-            .knobs = {iterations_knob(20), {"compliance", 0.0, 0.0, {1e-6, 0.0}}},
+            .parameters = {iterations_parameter(20), {"compliance", 0.0, 0.0, {1e-6, 0.0}}},
             .make = make_xpbd_area};
 }
 

@@ -7,7 +7,7 @@ import contact
 import meshes
 import slivers
 import starts
-from scene_map import (BASE, FRAME, MORE_RIVALS, OURS, PAPER, RIVALS, SECONDS, SIDE, STIFFNESS, TIME_STEP, WITHOUT, Axis,
+from scene_map import (BASE, FRAME, MORE_BASELINES, OURS, PAPER, BASELINES, SECONDS, SIDE, STIFFNESS, TIME_STEP, WITHOUT, Axis,
                        Map, changed, driven, point_name, set_stiffness, text, with_time_step)
 
 # scenes/skirt.json, coarser: where long columns of cloth hang from a pinned waist.
@@ -65,7 +65,7 @@ MAPS = [
     Map("time_step_stiffness", "Time step and stiffness", TIME_STEP, STIFFNESS),
     Map("alpha_stiffness", "α and stiffness",
         Axis("regularization α", [1.0, 1.001, 1.01, 1.05, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0], None), STIFFNESS, alpha=True,
-        methods=WITHOUT + [{"name": "apsl", "knobs": PAPER}, {"name": "apsl_printed", "knobs": PAPER}]),
+        methods=WITHOUT + [{"name": "apsl", "parameters": PAPER}, {"name": "apsl_printed", "parameters": PAPER}]),
     Map("mass_neighbours", "Every second vertex heavier", TIME_STEP, Axis("mass ratio", RATIOS, set_neighbours)),
     Map("mass_one", "One heavy vertex in the middle", TIME_STEP, Axis("mass ratio", RATIOS, set_one_heavy)),
     Map("mass_halves", "One half heavier: the one away from the pins", TIME_STEP, Axis("mass ratio", RATIOS, set_half)),
@@ -148,7 +148,7 @@ def cases():
     ]
 
 
-CASE_METHODS = WITHOUT + OURS + RIVALS + MORE_RIVALS
+CASE_METHODS = WITHOUT + OURS + BASELINES + MORE_BASELINES
 
 CASES = "cases"  # the name under which they are stored together
 NAMES = [entry.name for entry in MAPS] + [CASES]

@@ -44,7 +44,7 @@ def columns_of(name, chosen):
     for x in chosen.x.values:
         methods = chosen.methods
         if chosen.alpha:
-            methods = [{**method, "knobs": {**method["knobs"], "strain_limiting.regularization": x}}
+            methods = [{**method, "parameters": {**method["parameters"], "strain_limiting.regularization": x}}
                        if method["name"] != "none" else method for method in methods]
         columns.append(([(maps.point_name(x, y), chosen.scene(x, y)) for y in chosen.y.values], methods))
     return columns
@@ -100,7 +100,7 @@ def condensed(name, chosen, results):
         own = [[runs[point, method] for point in row] for row in points]
         without = [[runs[point, "none"] for point in row] for row in points]
         document["methods"].append({
-            "name": method, "title": run["title"], "citation": run["citation"], "knobs": run["knobs"],
+            "name": method, "title": run["title"], "citation": run["citation"], "parameters": run["parameters"],
             "outcome": ["".join(outcome.outcome(a, b, driven[a["scene"]]) for a, b in zip(*rows))
                         for rows in zip(own, without)],
             "greatest": [[rounded(outcome.greatest(a)) for a in row] for row in own],
@@ -131,7 +131,7 @@ def main():
     parser.add_argument("maps", nargs="*", metavar="MAP", help="of " + ", ".join(known) + "; all without")
     parser.add_argument("--work", type=Path, required=True, help="folder for scenes and whole results")
     parser.add_argument("--out", type=Path, required=True, help="folder for the outcomes")
-    parser.add_argument("--keep", choices=("nothing", "rivals", "all"), default="nothing",
+    parser.add_argument("--keep", choices=("nothing", "baselines", "all"), default="nothing",
                         help="of the runs that WORK holds from before")
     parser.add_argument("--every", type=int, default=1, help="takes every so many-th value of a map's axes")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -148,7 +148,7 @@ def main():
             folder = options.work / name
             if options.keep == "nothing":
                 shutil.rmtree(folder, ignore_errors=True)
-            elif options.keep == "rivals":
+            elif options.keep == "baselines":
                 drop_ours(folder)
             for number, column in enumerate(columns_of(name, chosen[name])):
                 futures[name, number] = (folder, *column, options.run_seconds)

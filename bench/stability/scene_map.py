@@ -21,21 +21,21 @@ BASE = {
 # The paper's: consistent matrix, α = 1.2, 10 sub-steps, tolerance 0.1. The printed matrix needs α ≥ 2 when iterated.
 PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2, "strain_limiting.tolerance": 0.1,
          "strain_limiting.max_iterations": 50, "strain_limiting.target_area_change": 0,
-         "strain_limiting.first_regularization": 0, "strain_limiting.kept_pressures": 0}
+         "strain_limiting.first_regularization": 0, "strain_limiting.warm_start_sub_steps": 0}
 PRINTED = {**PAPER, "strain_limiting.regularization": 2}
-OURS = [{"name": "apsl_defaults", "knobs": {}}, {"name": "apsl", "knobs": PAPER},
-        {"name": "apsl_printed", "knobs": PRINTED}]
+OURS = [{"name": "apsl_defaults", "parameters": {}}, {"name": "apsl", "parameters": PAPER},
+        {"name": "apsl_printed", "parameters": PRINTED}]
 # With the standard settings of bench/methods, most of them 20 iterations: what takes about as long as ours.
-RIVALS = [{"name": name, "knobs": {}} for name in (
+BASELINES = [{"name": name, "parameters": {}} for name in (
     "pbd_area_gauss_seidel", "pbd_area_jacobi", "xpbd_area", "strain_based_dynamics_area", "ring_area",
     "hierarchical_constraints", "hierarchical_pbd", "edge_limits_gauss_seidel", "pbd_edges",
     "strain_based_dynamics_strain", "continuum_strain_limiting")]
 # As slow as twenty of the others, or nearly the same as one of them: in the single cases alone.
-MORE_RIVALS = [{"name": name, "knobs": {}} for name in (
+MORE_BASELINES = [{"name": name, "parameters": {}} for name in (
     "pbd_area_colored", "edge_limits_jacobi", "xpbd_edges", "fast_projection", "nonconforming_edge_midpoint")]
-WITHOUT = [{"name": "none", "knobs": {}}]
+WITHOUT = [{"name": "none", "parameters": {}}]
 # The matrix as printed has its verdict from the other maps.
-WITHOUT_PRINTED = WITHOUT + OURS[:2] + RIVALS
+WITHOUT_PRINTED = WITHOUT + OURS[:2] + BASELINES
 
 
 @dataclass
@@ -52,8 +52,8 @@ class Map:
     x: Axis
     y: Axis
     base: dict = field(default_factory=lambda: BASE)
-    methods: list = field(default_factory=lambda: WITHOUT + OURS + RIVALS)
-    alpha: bool = False  # the x axis is ours alone, a knob: no scene says it
+    methods: list = field(default_factory=lambda: WITHOUT + OURS + BASELINES)
+    alpha: bool = False  # the x axis is ours alone, a parameter: no scene says it
 
     def scene(self, x, y):
         scene = with_time_step(copy.deepcopy(self.base), FRAME)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""The atlas in numbers, as it stands in docs/stability.md: how many points each method holds on each map, where a rival
+"""The atlas in numbers, as it stands in docs/stability.md: how many points each method holds on each map, where a baseline
 holds and ours does not, and where ours is worse than no limiter. Markdown."""
 
 import argparse
@@ -69,7 +69,7 @@ def stretches(document):
     return "{:.3g} ({:.3g})".format(*longest)
 
 
-def held_by_rivals_alone(document):
+def held_by_baselines_alone(document):
     ours = judged(document)
     for name, row, column in points_of(document):
         if ours["outcome"][row][column] == outcome.HELD:
@@ -103,20 +103,20 @@ def gaining_energy(document):
 
 
 def table(documents):
-    lines = ["| map | points | no limiter holds | ours, the defaults | ours, the paper's | ours, printed | best rival "
-             "| a rival holds, ours does not | ours worse than no limiter | ours gains energy "
+    lines = ["| map | points | no limiter holds | ours, the defaults | ours, the paper's | ours, printed | best baseline "
+             "| a baseline holds, ours does not | ours worse than no limiter | ours gains energy "
              "| longest edge where ours holds (without a limiter) |", "|---|---|---|---|---|---|---|---|---|---|---|"]
     for document in documents:
         methods = {method["name"]: method for method in document["methods"]}
         held = {name: str(count(method, outcome.HELD)) for name, method in methods.items()}
-        rivals = [method for method in document["methods"] if not is_ours(method) and method["name"] != "none"]
-        best = max(rivals, key=lambda method: count(method, outcome.HELD), default=None)
+        baselines = [method for method in document["methods"] if not is_ours(method) and method["name"] != "none"]
+        best = max(baselines, key=lambda method: count(method, outcome.HELD), default=None)
         lines.append("| " + " | ".join([
             f"[{document.get('title', 'Single cases')}](stability/{document['map']}.png)",
             str(len(points_of(document))),
             held["none"], held.get("apsl_defaults", "–"), held["apsl"], held.get("apsl_printed", "–"),
             "–" if best is None else f"{held[best['name']]} ({best['title']})",
-            str(len(list(held_by_rivals_alone(document)))), str(len(list(worse_than_none(document)))),
+            str(len(list(held_by_baselines_alone(document)))), str(len(list(worse_than_none(document)))),
             str(count(judged(document), outcome.GAINED_ENERGY)), stretches(document)]) + " |")
     return lines
 
@@ -135,8 +135,8 @@ def listed(documents, find):
 
 def summary(folder):
     documents = [json.loads((folder / f"{name}.json").read_text()) for name in maps.NAMES]
-    return "\n".join([*table(documents), "", "**A rival holds and ours does not:**", "",
-                      *listed(documents, held_by_rivals_alone), "", "**Ours is worse than no limiter:**", "",
+    return "\n".join([*table(documents), "", "**A baseline holds and ours does not:**", "",
+                      *listed(documents, held_by_baselines_alone), "", "**Ours is worse than no limiter:**", "",
                       *listed(documents, worse_than_none), "", "**Ours gains energy:**", "",
                       *listed(documents, gaining_energy)]) + "\n"
 

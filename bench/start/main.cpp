@@ -50,8 +50,8 @@ void run(const Arguments& arguments) {
     const Device device = open_device(arguments.platform, arguments.device);
     const Cloth cloth = make_cloth({arguments.rows, arguments.rows, {}});
     const std::vector<float> velocities(cloth.positions.size());
-    const OwnedBuffer x = device.upload(cloth.positions), v = device.upload(velocities),
-                      w = device.upload(cloth.inverse_masses), a = device.upload(cloth.rest_areas);
+    const host::BufferHandle x = device.upload(cloth.positions), v = device.upload(velocities),
+                             w = device.upload(cloth.inverse_masses), a = device.upload(cloth.rest_areas);
     const Buffers buffers{
         .positions = {x.get()}, .velocities = {v.get()}, .inverse_masses = {w.get()}, .rest_areas = {a.get()}};
     const std::vector<char> given = arguments.binary.empty() ? std::vector<char>{} : read_file(arguments.binary);

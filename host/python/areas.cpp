@@ -17,11 +17,10 @@ Array<double> areas(py::handle positions, py::handle triangles) {
     double* area = result.mutable_data();
     for (std::size_t t = 0; t < corners.size(); ++t) {
         const auto& [i, j, k] = corners[t];
-        for (const std::uint32_t vertex : corners[t]) {
+        for (const std::uint32_t vertex : corners[t])
             if (vertex >= points.shape(0))
                 refuse("triangles", "vertex " + std::to_string(vertex) + " in triangle " + std::to_string(t),
                        "0 to " + std::to_string(points.shape(0) - 1) + ", as there are so many positions");
-        }
         std::array<double, 3> a{};
         std::array<double, 3> b{};
         for (std::uint32_t axis = 0; axis < 3; ++axis) {

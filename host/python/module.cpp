@@ -27,7 +27,7 @@ void translate(std::exception_ptr pointer) {
 
 py::list device_dicts() {
     py::list list;
-    for (const Device& device : devices()) {
+    for (const host::OpenClDevice& device : devices()) {
         py::dict fields;
         fields["number"] = list.size();
         fields["name"] = device.name;

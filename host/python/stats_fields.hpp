@@ -23,7 +23,7 @@ struct StatsField {
 
 inline constexpr std::tuple stats_fields{
     StatsField{"sub_steps", &Stats::sub_steps},
-    StatsField{"cg_iterations", &Stats::cg_iterations},
+    StatsField{"iterations", &Stats::iterations},
     StatsField{"residual", &Stats::residual},
     StatsField{"max_area_change", &Stats::max_area_change},
     StatsField{"rms_area_change", &Stats::rms_area_change},

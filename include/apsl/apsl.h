@@ -47,21 +47,22 @@ typedef enum apsl_execution {
     APSL_EXECUTION_ONE_GROUP = 2 /**< one work-group a cloth, the whole call in one launch; consistent, matrix-free */
 } apsl_execution;
 
-/** How a call ended, apsl_limiter_stats.status. */
-typedef enum apsl_limiter_status {
-    APSL_LIMITER_OK = 0,            /**< every solve met its tolerance */
-    APSL_LIMITER_NOT_CONVERGED = 1, /**< a solve used all its iterations; the best state reached stands */
-    APSL_LIMITER_WORSENED = 2,      /**< area change rose; of start and end the state with less RMS stands */
-    APSL_LIMITER_DIVERGED = 3,      /**< not finite, going in or on the way: velocities are as they were given */
-    APSL_LIMITER_OFF = 4            /**< enabled was 0: nothing was looked at */
-} apsl_limiter_status;
+/** How a call ended, apsl_stats.status. */
+typedef enum apsl_status {
+    APSL_STATUS_OK = 0,            /**< every solve met its tolerance */
+    APSL_STATUS_NOT_CONVERGED = 1, /**< a solve used all its iterations; the best state reached stands */
+    APSL_STATUS_WORSENED = 2,      /**< area change rose; of start and end the state with less RMS stands */
+    APSL_STATUS_DIVERGED = 3,      /**< not finite, going in or on the way: velocities are as they were given */
+    APSL_STATUS_OFF = 4            /**< enabled was 0: nothing was looked at */
+} apsl_status;
 
-/** What apsl_limiter_stats.offender_index counts. */
-typedef enum apsl_limiter_offender {
+/** What apsl_stats.offender_index counts. */
+typedef enum apsl_offender {
     APSL_OFFENDER_NONE = 0,    /**< nothing */
     APSL_OFFENDER_VERTEX = 1,  /**< position, velocity or inverse mass is not finite, or the mass is negative */
-    APSL_OFFENDER_TRIANGLE = 2 /**< rest area is negative or, like alpha or the area it came to, not finite */
-} apsl_limiter_offender;
+    APSL_OFFENDER_TRIANGLE = 2 /**< diverged: rest area is negative or, like alpha or the area it came to, not finite;
+                                    worsened: it has the greatest area change, and that rose */
+} apsl_offender;
 
 /** apsl::ProgramBinaryUse: what became of a program binary. Unless taken, the program was built from source. */
 typedef enum apsl_program_binary_use {
@@ -91,8 +92,8 @@ typedef struct apsl_topology apsl_topology;
 /** apsl::StrainLimiter behind a handle: one thread at a time. */
 typedef struct apsl_limiter apsl_limiter;
 
-/** apsl::Options: what is compiled in. Begin with apsl_limiter_default_options(). */
-typedef struct apsl_limiter_options {
+/** apsl::Options: what is compiled in. Begin with apsl_default_options(). */
+typedef struct apsl_options {
     int32_t matrix;                      /**< apsl_matrix */
     int32_t apply;                       /**< apsl_apply */
     int32_t execution;                   /**< apsl_execution */
@@ -104,26 +105,26 @@ typedef struct apsl_limiter_options {
     uint32_t inverse_mass_stride;        /**< floats from one to the next, >= 1 */
     int32_t positions_only;              /**< not 0: no velocities; positions are the end of the step, in and out */
     int32_t regularization_per_triangle; /**< not 0: a regularization buffer is given with every call */
-    uint32_t kept_pressures;             /**< sub-steps whose pressures the next call's solves start from */
+    uint32_t warm_start_sub_steps;       /**< sub-steps whose pressures the next call's solves start from */
     int32_t solver;                      /**< apsl_solver */
-    uint32_t bound_period;               /**< by Chebyshev, >= 1: sub-steps from one bound of the matrix to the next */
+    uint32_t bound_interval;             /**< by Chebyshev, >= 1: sub-steps from one bound of the matrix to the next */
     uint32_t reserved[6];                /**< zeros; room for fields to come, so that the size stays */
-} apsl_limiter_options;
+} apsl_options;
 
-/** apsl::Parameters: what may change from call to call. Begin with apsl_limiter_default_parameters(). */
-typedef struct apsl_limiter_parameters {
-    float time_step;             /**< s, > 0 */
-    float regularization;        /**< alpha >= 1, multiplies diag(G) */
-    int32_t sub_steps;           /**< >= 0 */
-    float target_area_change;    /**< |A - A0| / A0 >= 0 at which no further sub-step is done */
-    float tolerance;             /**< in [0, 1), of a solve's residual */
-    int32_t max_iterations;      /**< >= 1, of a solve */
-    int32_t adaptive_iterations; /**< 0: alpha stays as given; else more iterations than this raise it */
-    float first_regularization;  /**< 0: alpha is the same in every sub-step; else > 1, that of the first */
-    int32_t stepping;            /**< apsl_stepping */
-    int32_t enabled;             /**< 0: the cloth is left alone in this call; 1 by default */
-    uint32_t reserved[8];        /**< zeros; room for fields to come, so that the size stays */
-} apsl_limiter_parameters;
+/** apsl::Parameters: what may change from call to call. Begin with apsl_default_parameters(). */
+typedef struct apsl_parameters {
+    float time_step;            /**< s, > 0 */
+    float regularization;       /**< alpha >= 1, multiplies diag(G) */
+    int32_t sub_steps;          /**< >= 0 */
+    float target_area_change;   /**< |A - A0| / A0 >= 0 at which no further sub-step is done */
+    float tolerance;            /**< in [0, 1), of a solve's residual */
+    int32_t max_iterations;     /**< >= 1, of a solve */
+    int32_t adaptive_threshold; /**< 0: alpha stays as given; else more iterations than this raise it */
+    float first_regularization; /**< 0: alpha is the same in every sub-step; else > 1, that of the first */
+    int32_t stepping;           /**< apsl_stepping */
+    int32_t enabled;            /**< 0: the cloth is left alone in this call; 1 by default */
+    uint32_t reserved[8];       /**< zeros; room for fields to come, so that the size stays */
+} apsl_parameters;
 
 /** apsl::BufferView: 32-bit floats in a buffer of the caller's. */
 typedef struct apsl_buffer_view {
@@ -132,30 +133,30 @@ typedef struct apsl_buffer_view {
 } apsl_buffer_view;
 
 /** apsl::Buffers; several cloths follow one another. */
-typedef struct apsl_limiter_buffers {
+typedef struct apsl_buffers {
     apsl_buffer_view positions;      /**< m, [V] with position_stride; the start of the step; only read. With
                                         positions_only the end of the step, in and out */
     apsl_buffer_view velocities;     /**< m/s, [V] with velocity_stride; in and out; null with positions_only */
     apsl_buffer_view inverse_masses; /**< 1/kg, [V] with inverse_mass_stride, 0 pins a vertex */
-    apsl_buffer_view rest_areas;     /**< m2, [T] */
+    apsl_buffer_view rest_areas;     /**< m2, [T]; 0 leaves a triangle alone */
     apsl_buffer_view regularization; /**< alpha, [T]; only with regularization_per_triangle, else a null buffer */
-} apsl_limiter_buffers;
+} apsl_buffers;
 
 /** apsl::Stats: what a call did to one cloth. */
-typedef struct apsl_limiter_stats {
-    int32_t sub_steps;             /**< solves done */
-    int32_t cg_iterations;         /**< over all of them */
-    float residual;                /**< greatest relative residual at the end of a solve */
-    float max_area_change;         /**< max |A - A0| / A0 of the state that stands */
-    float rms_area_change;         /**< weighted with A0 */
+typedef struct apsl_stats {
+    int32_t sub_steps;     /**< solves done */
+    int32_t iterations;    /**< over all solves: of Conjugate Gradient, or products with the matrix by Chebyshev */
+    float residual;        /**< greatest relative residual at the end of a solve; 0 by Chebyshev */
+    float max_area_change; /**< max |A - A0| / A0 of the state that stands */
+    float rms_area_change; /**< weighted with A0 */
     float initial_max_area_change; /**< the greatest at x + dt v */
     float initial_rms_area_change; /**< and the weighted RMS there */
-    int32_t status;                /**< apsl_limiter_status */
-    int32_t offender;              /**< apsl_limiter_offender; none unless status is diverged or worsened */
+    int32_t status;                /**< apsl_status */
+    int32_t offender;              /**< apsl_offender; none unless status is diverged or worsened */
     uint32_t offender_index;       /**< the first one, within its cloth */
     uint32_t raised_vertices;      /**< vertices that weighed more than given in the last sub-step */
     float greatest_mass_ratio;     /**< their greatest mass over the one given; 1 where none was raised */
-} apsl_limiter_stats;
+} apsl_stats;
 
 /** What went wrong in this thread's last failed call: one line, empty before the first. Valid until the next one. */
 APSL_API const char* apsl_last_error(void);
@@ -166,9 +167,9 @@ APSL_API const char* apsl_version(void);
 APSL_API int32_t apsl_version_number(void);
 
 /** The default options. */
-APSL_API apsl_limiter_options apsl_limiter_default_options(void);
+APSL_API apsl_options apsl_default_options(void);
 /** The default parameters. */
-APSL_API apsl_limiter_parameters apsl_limiter_default_parameters(void);
+APSL_API apsl_parameters apsl_default_parameters(void);
 
 /** triangles: 3 vertex indices each, counter-clockwise. *topology is null where this fails. */
 APSL_API apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_count, size_t vertex_count,
@@ -178,24 +179,22 @@ APSL_API void apsl_topology_destroy(apsl_topology* topology);
 
 /** One cloth or many. options may be null: the defaults. *limiter is null where this fails. */
 APSL_API apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
-                                         size_t cloth_count, const apsl_limiter_options* options,
-                                         apsl_limiter** limiter);
+                                         size_t cloth_count, const apsl_options* options, apsl_limiter** limiter);
 /** The same, from what apsl_limiter_program_binary gave: size bytes, tried in place of compiling. */
 APSL_API apsl_result apsl_limiter_create_from_binary(cl_context context, cl_device_id device,
                                                      const apsl_topology* const* cloths, size_t cloth_count,
-                                                     const apsl_limiter_options* options, const void* binary,
-                                                     size_t size, apsl_limiter** limiter);
+                                                     const apsl_options* options, const void* binary, size_t size,
+                                                     apsl_limiter** limiter);
 /** The same in memory of the caller's: a place in a buffer, itself no sub-buffer, with what
  * apsl_limiter_required_scratch_bytes says from its offset on. Nobody else may write there while the limiter lives.
  * binary may be null with size 0. */
 APSL_API apsl_result apsl_limiter_create_in_scratch(cl_context context, cl_device_id device,
                                                     const apsl_topology* const* cloths, size_t cloth_count,
-                                                    const apsl_limiter_options* options, const void* binary,
-                                                    size_t size, const apsl_buffer_view* scratch,
-                                                    apsl_limiter** limiter);
+                                                    const apsl_options* options, const void* binary, size_t size,
+                                                    const apsl_buffer_view* scratch, apsl_limiter** limiter);
 /** *bytes is what a limiter for these cloths and options needs of scratch at any offset; 0 where this fails. */
 APSL_API apsl_result apsl_limiter_required_scratch_bytes(cl_device_id device, const apsl_topology* const* cloths,
-                                                         size_t cloth_count, const apsl_limiter_options* options,
+                                                         size_t cloth_count, const apsl_options* options,
                                                          size_t* bytes);
 /** For other topologies, without compiling where the compiled program fits. scratch as in
  * apsl_limiter_create_in_scratch, not overlapping the present one; null allocates. Where this fails the limiter stays
@@ -217,10 +216,9 @@ APSL_API apsl_program_binary_use apsl_limiter_program_binary_use(const apsl_limi
 
 /** Queues one call; parameter_count is 1 or the number of cloths. The event completes with the call and is the caller's
  * to release; where event is null there is none. */
-APSL_API apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue,
-                                          const apsl_limiter_buffers* buffers,
-                                          const apsl_limiter_parameters* parameters, size_t parameter_count,
-                                          cl_uint wait_count, const cl_event* wait_list, cl_event* event);
+APSL_API apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, const apsl_buffers* buffers,
+                                          const apsl_parameters* parameters, size_t parameter_count, cl_uint wait_count,
+                                          const cl_event* wait_list, cl_event* event);
 
 /** Queues the areas of all triangles, m2, [T], at rest_positions (m, [V], laid out as options say of positions) into
  * rest_areas: once, before the first call that reads them. The event is as that of apsl_limiter_enqueue. */
@@ -231,9 +229,9 @@ APSL_API apsl_result apsl_limiter_enqueue_rest_areas(apsl_limiter* limiter, cl_c
 
 /** Queues a non-blocking read of the last call's statistics, stats_count the number of cloths. stats must live until
  * the event, which must not be null, completes. */
-APSL_API apsl_result apsl_limiter_read_stats(const apsl_limiter* limiter, cl_command_queue queue,
-                                             apsl_limiter_stats* stats, size_t stats_count, cl_uint wait_count,
-                                             const cl_event* wait_list, cl_event* event);
+APSL_API apsl_result apsl_limiter_read_stats(const apsl_limiter* limiter, cl_command_queue queue, apsl_stats* stats,
+                                             size_t stats_count, cl_uint wait_count, const cl_event* wait_list,
+                                             cl_event* event);
 
 #ifdef __cplusplus
 }

@@ -44,7 +44,7 @@ struct Options {
     Matrix matrix = Matrix::consistent;  ///< what couples the pressures
     Apply apply = Apply::matrix_free;    ///< how it is applied
     /// one_group requires matrix = consistent, apply = matrix_free and solver = conjugate_gradient. On GPUs it also
-    /// requires kept_pressures = 0 and regularization_per_triangle = false.
+    /// requires warm_start_sub_steps = 0 and regularization_per_triangle = false.
     Execution execution = Execution::automatic;
     /// Work-items a group, a power of two up to the device's limit; 0 takes what suits the device (1 on a CPU).
     std::uint32_t work_group_size = 0;
@@ -64,18 +64,18 @@ struct Options {
     bool positions_only = false;
     /// A regularization buffer is given with every call.
     bool regularization_per_triangle = false;
-    /// How many sub-steps of a call keep their pressures (4 B a triangle each; later sub-steps share the last). Kept
-    /// pressures are the first guess for the solves of the next call: fewer CG iterations at small α, at the price of
-    /// one product with the matrix a solve, counted as an iteration. As many as there are sub-steps, or 0: solves start
+    /// How many sub-steps of a call keep their pressures (4 B a triangle each; later sub-steps share the last). The
+    /// solves of the next call start from them: fewer CG iterations at small α, at the price of one product with the
+    /// matrix a solve, counted as an iteration. As many as there are sub-steps, or 0: solves start
     /// from zero. Results then depend on the calls before, within the tolerance of the solves.
-    std::uint32_t kept_pressures = 0;
-    /// chebyshev needs the consistent matrix, matrix-free, no kept_pressures and one α for all triangles, and with
-    /// every call Parameters::adaptive_iterations 0.
+    std::uint32_t warm_start_sub_steps = 0;
+    /// chebyshev needs the consistent matrix, matrix-free, no warm_start_sub_steps and one α for all triangles, and
+    /// with every call Parameters::adaptive_threshold 0.
     Solver solver = Solver::conjugate_gradient;
     /// chebyshev: sub-steps from one bound of the matrix to the next, ≥ 1. 1 is for garments, where a triangle may
     /// become another from one sub-step to the next; where none does, one bound for all sub-steps of a call (as many or
     /// more) is quicker (docs/formulation.md).
-    std::uint32_t bound_period = 1;
+    std::uint32_t bound_interval = 1;
 
     bool operator==(const Options&) const = default;  ///< field by field
 };

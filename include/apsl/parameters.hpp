@@ -35,7 +35,7 @@ struct Parameters {
     /// 0: α stays as given. Otherwise a solve that fails or takes more iterations than this raises α for the next one
     /// (α − 1 doubles, up to 1024-fold), and one that takes at most half of it lowers it again towards the given value
     /// (Section 4).
-    std::int32_t adaptive_iterations = 0;
+    std::int32_t adaptive_threshold = 0;
     /// 0: α is the same in every sub-step. Otherwise > 1, the α of the first: from there to `regularization`, in the
     /// last, α − 1 changes by the same factor from one sub-step to the next (docs/formulation.md). Needs
     /// regularization > 1; a per-triangle α is that of the last sub-step and is scaled alike.

@@ -30,9 +30,9 @@ struct Buffers {
 template <class Real>
 class BasicStrainLimiter {
 public:
-    /// Of the options `matrix`, `solver`, `kept_pressures` and `bound_period` count here; the others say how a device
-    /// is used. α is one for each triangle where the buffers have one. Throws Error(invalid_argument) as validate()
-    /// does.
+    /// Of the options `matrix`, `solver`, `warm_start_sub_steps` and `bound_interval` count here; the others say how a
+    /// device is used. α is one for each triangle where the buffers have one. Throws Error(invalid_argument) as
+    /// validate() does.
     explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, const Options& options = {});
     ~BasicStrainLimiter();
     BasicStrainLimiter(BasicStrainLimiter&&) noexcept;  ///< what was moved from may only be assigned to or destroyed

@@ -30,8 +30,8 @@ enum class Offender : std::int32_t {
 
 /// What one filter call did to one cloth. The device writes this layout itself (kernels/layout.h).
 struct Stats {
-    std::int32_t sub_steps;      ///< solves done
-    std::int32_t cg_iterations;  ///< over all of them; by Chebyshev products with the matrix
+    std::int32_t sub_steps;   ///< solves done
+    std::int32_t iterations;  ///< over all of them; by Chebyshev products with the matrix
     /// Greatest ‖r‖ / ‖b‖ at the end of a solve, norm as in Parameters::tolerance; 0 by Chebyshev, which measures none.
     float residual;
     float max_area_change;          ///< max |A − A⁰| / A⁰ of the state that stands

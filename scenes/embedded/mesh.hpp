@@ -6,12 +6,18 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-/// Triangles of a flat square sheet of side × side vertices, `width` m wide, its diagonals alternating; adds the
-/// vertices to `positions`.
-inline std::vector<apsl::Triangle> square(std::uint32_t side, float width, std::vector<float>& positions) {
+struct SquareMesh {
+    std::vector<float> positions;  ///< m, three for each vertex
+    std::shared_ptr<const apsl::Topology> topology;
+};
+
+/// A flat square sheet of side × side vertices, `width` m wide, its diagonals alternating.
+inline SquareMesh square(std::uint32_t side, float width) {
     const float cell = width / static_cast<float>(side - 1);
+    std::vector<float> positions;
     std::vector<apsl::Triangle> triangles;
     for (std::uint32_t v = 0; v < side * side; ++v) {
         const std::uint32_t row = v / side, column = v % side, below = v + side;
@@ -23,7 +29,7 @@ inline std::vector<apsl::Triangle> square(std::uint32_t side, float width, std::
         triangles.push_back({v, below, even ? v + 1 : below + 1});
         triangles.push_back({even ? below : v, below + 1, v + 1});
     }
-    return triangles;
+    return {positions, apsl::Topology::build(triangles, positions.size() / 3)};
 }
 
 /// From vertex a to vertex b, m; positions: m, three for each vertex.

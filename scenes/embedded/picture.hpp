@@ -12,8 +12,9 @@
 
 /// Writes folder/frame_N.vtp, the cloth with the area change of each triangle, and folder/cloth.pvd, the index that
 /// scenes/pictures/render.py opens. Throws std::runtime_error.
-inline void write_picture(const std::filesystem::path& folder, int frame, const apsl::Topology& topology,
-                          const std::vector<float>& rest, const std::vector<float>& positions) {
+inline void write_picture(const std::filesystem::path& folder, int frame, const SquareMesh& rest,
+                          const std::vector<float>& positions) {
+    const apsl::Topology& topology = *rest.topology;
     const std::string name = "frame_" + std::to_string(frame) + ".vtp";
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "cloth.pvd") << "<VTKFile type=\"Collection\"><Collection>"
@@ -31,7 +32,7 @@ inline void write_picture(const std::filesystem::path& folder, int frame, const 
     for (std::size_t end = 3; end <= 3 * topology.triangle_count(); end += 3) file << end << ' ';
     file << "</DataArray></Polys>\n<CellData><DataArray type=\"Float32\" Name=\"area_change\" format=\"ascii\">\n";
     for (const apsl::Triangle& t : topology.triangles())
-        file << std::abs(area(positions, t) / area(rest, t) - 1.0f) << ' ';
+        file << std::abs(area(positions, t) / area(rest.positions, t) - 1.0f) << ' ';
     file << "</DataArray></CellData></Piece></PolyData></VTKFile>\n";
     if (!file.flush()) throw std::runtime_error((folder / name).string() + ": cannot be written");
 }

@@ -31,9 +31,7 @@ void check_positions(std::span<const double> positions, std::size_t vertex_count
 
 ClothState make_cloth_state(std::shared_ptr<const Topology> topology, std::span<const double> rest_positions,
                             double density, std::span<const std::uint32_t> pinned_vertices) {
-    if (!topology) {
-        throw Error(ErrorCode::invalid_argument, "cloth: expected a topology, got none");
-    }
+    if (!topology) throw Error(ErrorCode::invalid_argument, "cloth: expected a topology, got none");
     const std::size_t vertex_count = topology->vertex_count();
     check_positions(rest_positions, vertex_count);
     if (!(density > 0.0) || !std::isfinite(density)) {
@@ -51,9 +49,7 @@ ClothState make_cloth_state(std::shared_ptr<const Topology> topology, std::span<
     for (const Triangle& triangle : topology->triangles()) {
         const double area = triangle_area(rest_positions, triangle);
         cloth.rest_areas.push_back(area);
-        for (const std::uint32_t vertex : triangle) {
-            cloth.masses[vertex] += density * area / 3.0;
-        }
+        for (const std::uint32_t vertex : triangle) cloth.masses[vertex] += density * area / 3.0;
     }
 
     std::vector<bool> pinned(vertex_count, false);
@@ -68,9 +64,7 @@ ClothState make_cloth_state(std::shared_ptr<const Topology> topology, std::span<
     const auto corner_offsets = topology->corner_offsets();
     for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) {
         const bool isolated = corner_offsets[vertex] == corner_offsets[vertex + 1];
-        if (pinned[vertex] || isolated) {
-            continue;
-        }
+        if (pinned[vertex] || isolated) continue;
         cloth.inverse_masses[vertex] = 1.0 / cloth.masses[vertex];
         if (!std::isfinite(cloth.inverse_masses[vertex]) || !std::isfinite(cloth.masses[vertex])) {
             throw Error(ErrorCode::invalid_mesh, "cloth: the triangles at vertex " + std::to_string(vertex) +

@@ -36,9 +36,7 @@ struct Surface {
 Vector any_way_out(const Vector& axis, const Vector& back) {
     for (const Vector& candidate : {back, Vector(Vector::UnitY()), Vector(Vector::UnitX())}) {
         const Vector across = candidate - axis.dot(candidate) * axis;
-        if (across.norm() > 1e-6 * candidate.norm()) {
-            return across.normalized();
-        }
+        if (across.norm() > 1e-6 * candidate.norm()) return across.normalized();
     }
     return Vector::UnitX();
 }
@@ -80,9 +78,7 @@ const Contact& contact_of(const Collider& collider) {
 double lead_out_of(const Collider& collider, Eigen::Map<Vector> position, double time_step) {
     const auto [distance, normal] = surface(collider, position, position);
     const double depth = contact_of(collider).thickness - distance;
-    if (!(depth > start_depth)) {
-        return 0.0;
-    }
+    if (!(depth > start_depth)) return 0.0;
     const double way = std::min(1.0, time_step / time_to_leave) * depth;
     position += way * normal;
     return depth - way;
@@ -95,18 +91,14 @@ bool push_out(const Collider& collider, const Vector& position, Eigen::Map<Vecto
     const auto [distance, normal] = surface(collider, place, position);
     const Contact& contact = contact_of(collider);
     const double depth = contact.thickness - allowed_depth - distance;
-    if (!(depth > ignored_depth)) {
-        return false;
-    }
+    if (!(depth > ignored_depth)) return false;
     const double push = depth / time_step;
     velocity += push * normal;
     // Coulomb: the tangential impulse is at most μ times the normal one, and never turns the motion round.
     const double normal_speed = velocity.dot(normal);
     const Vector tangential = velocity - normal_speed * normal;
     const double speed = tangential.norm();
-    if (contact.friction > 0.0 && speed > 0.0) {
-        velocity -= std::min(1.0, contact.friction * push / speed) * tangential;
-    }
+    if (contact.friction > 0.0 && speed > 0.0) velocity -= std::min(1.0, contact.friction * push / speed) * tangential;
     return true;
 }
 
@@ -115,15 +107,13 @@ bool push_out(const Collider& collider, const Vector& position, Eigen::Map<Vecto
 }
 
 void check_point(const std::array<double, 3>& point, const std::string& name) {
-    if (!std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); })) {
+    if (!std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); }))
         fail(name + " is not finite");
-    }
 }
 
 void check_radius(double radius) {
-    if (!(radius > 0.0) || !std::isfinite(radius)) {
+    if (!(radius > 0.0) || !std::isfinite(radius))
         fail("radius must be positive and finite (m), got " + std::to_string(radius));
-    }
 }
 
 void check_shape(const Sphere& sphere) {
@@ -134,9 +124,7 @@ void check_shape(const Sphere& sphere) {
 void check_shape(const Plane& plane) {
     check_point(plane.point, "point");
     check_point(plane.normal, "normal");
-    if (Vector(plane.normal.data()).stableNorm() == 0.0) {
-        fail("normal must not be zero");
-    }
+    if (Vector(plane.normal.data()).stableNorm() == 0.0) fail("normal must not be zero");
 }
 
 void check_shape(const Capsule& capsule) {
@@ -146,12 +134,10 @@ void check_shape(const Capsule& capsule) {
 }
 
 void check_contact(const Contact& contact) {
-    if (!(contact.friction >= 0.0) || !std::isfinite(contact.friction)) {
+    if (!(contact.friction >= 0.0) || !std::isfinite(contact.friction))
         fail("friction must be finite and ≥ 0, got " + std::to_string(contact.friction));
-    }
-    if (!(contact.thickness >= 0.0) || !std::isfinite(contact.thickness)) {
+    if (!(contact.thickness >= 0.0) || !std::isfinite(contact.thickness))
         fail("thickness must be finite and ≥ 0 (m), got " + std::to_string(contact.thickness));
-    }
 }
 
 }  // namespace
@@ -169,9 +155,7 @@ StartInside start_inside(const ClothState& cloth, const Collider& collider) {
     StartInside inside;
     const std::span<const double> positions = cloth.positions;
     for (std::size_t vertex = 0; vertex < cloth.inverse_masses.size(); ++vertex) {
-        if (cloth.inverse_masses[vertex] == 0.0) {
-            continue;
-        }
+        if (cloth.inverse_masses[vertex] == 0.0) continue;
         const Vector place = vector_at(positions, vertex);
         const double depth = contact_of(collider).thickness - surface(collider, place, place).distance;
         if (depth > start_depth) {
@@ -191,22 +175,17 @@ std::size_t resolve_collisions(ClothState& cloth, std::span<const Collider> coll
     std::vector<double> allowed_depths(colliders.size(), 0.0);
     std::size_t touched_vertices = 0;
     for (std::size_t vertex = 0; vertex < cloth.inverse_masses.size(); ++vertex) {
-        if (cloth.inverse_masses[vertex] == 0.0) {
-            continue;
-        }
+        if (cloth.inverse_masses[vertex] == 0.0) continue;
         const Eigen::Map<Vector> position = vector_at(std::span(cloth.positions), vertex);
-        for (std::size_t k = 0; lead_out && k < colliders.size(); ++k) {
+        for (std::size_t k = 0; lead_out && k < colliders.size(); ++k)
             allowed_depths[k] = lead_out_of(colliders[k], position, time_step);
-        }
         for (int round = 0; round < max_rounds; ++round) {
             bool touched = false;
             for (std::size_t k = 0; k < colliders.size(); ++k) {
                 touched |= push_out(colliders[k], position, vector_at(std::span(cloth.velocities), vertex), time_step,
                                     allowed_depths[k], round == 0 ? 0.0 : slack);
             }
-            if (!touched) {
-                break;
-            }
+            if (!touched) break;
             touched_vertices += round == 0 ? 1 : 0;
         }
     }

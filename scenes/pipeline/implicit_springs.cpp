@@ -23,15 +23,12 @@ void check_springs(const ClothState& cloth, const std::vector<Spring>& springs) 
             throw Error(ErrorCode::invalid_argument, name + "names a vertex out of range, the mesh has " +
                                                          std::to_string(cloth.masses.size()) + " vertices");
         }
-        if (spring.a == spring.b) {
+        if (spring.a == spring.b)
             throw Error(ErrorCode::invalid_argument, name + "names vertex " + std::to_string(spring.a) + " twice");
-        }
-        if (!(spring.rest_length >= 0.0) || !std::isfinite(spring.rest_length)) {
+        if (!(spring.rest_length >= 0.0) || !std::isfinite(spring.rest_length))
             throw Error(ErrorCode::invalid_argument, name + "has a rest length that is negative or not finite");
-        }
-        if (!(spring.stiffness >= 0.0) || !std::isfinite(spring.stiffness)) {
+        if (!(spring.stiffness >= 0.0) || !std::isfinite(spring.stiffness))
             throw Error(ErrorCode::invalid_argument, name + "has a stiffness that is negative or not finite");
-        }
     }
 }
 
@@ -105,9 +102,7 @@ struct ImplicitSprings::Implementation {
             system.precondition(residual, preconditioned);
             const double rho_before = std::exchange(rho, dot(residual, preconditioned));
             const double beta = rho / rho_before;
-            for (std::size_t i = 0; i < residual.size(); ++i) {
-                direction[i] = preconditioned[i] + beta * direction[i];
-            }
+            for (std::size_t i = 0; i < residual.size(); ++i) direction[i] = preconditioned[i] + beta * direction[i];
             ++result.iterations;
         }
         result.residual = initial > 0.0 ? std::sqrt(rho / initial) : 0.0;
@@ -135,9 +130,8 @@ SpringSolve ImplicitSprings::advance_velocities(ClothState& cloth, const std::ar
         throw Error(ErrorCode::invalid_argument,
                     "implicit springs: time_step must be positive (s), got " + std::to_string(time_step));
     }
-    if (!all_finite(cloth.positions) || !all_finite(cloth.velocities)) {
+    if (!all_finite(cloth.positions) || !all_finite(cloth.velocities))
         return {.iterations = 0, .residual = 1.0, .converged = false};
-    }
     Implementation& state = *implementation_;
     state.system.linearize(cloth, time_step, state.damping);
     state.set_right_hand_side(cloth, gravity, time_step);
@@ -146,9 +140,7 @@ SpringSolve ImplicitSprings::advance_velocities(ClothState& cloth, const std::ar
         result.converged = false;
         return result;
     }
-    for (std::size_t i = 0; i < cloth.velocities.size(); ++i) {
-        cloth.velocities[i] += state.velocity_change[i];
-    }
+    for (std::size_t i = 0; i < cloth.velocities.size(); ++i) cloth.velocities[i] += state.velocity_change[i];
     return result;
 }
 

@@ -34,9 +34,8 @@ std::vector<double> predicted_area_changes(const ClothState& cloth, double time_
     for (const Triangle& triangle : cloth.topology->triangles()) {
         const double rest_area = cloth.rest_areas[changes.size()];
         Eigen::Vector3d corner[3];
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < 3; ++k)
             corner[k] = vector_at(positions, triangle[k]) + time_step * vector_at(velocities, triangle[k]);
-        }
         const double area = 0.5 * (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
         changes.push_back(rest_area > 0.0 ? std::abs(area - rest_area) / rest_area : 0.0);
     }
@@ -50,9 +49,7 @@ AreaChange summarize(const ClothState& cloth, const std::vector<double>& changes
     for (std::size_t triangle = 0; triangle < changes.size(); ++triangle) {
         if (cloth.rest_areas[triangle] > 0.0) {
             // Not std::max alone: a NaN must show and stay.
-            if (changes[triangle] > summary.max || std::isnan(changes[triangle])) {
-                summary.max = changes[triangle];
-            }
+            if (changes[triangle] > summary.max || std::isnan(changes[triangle])) summary.max = changes[triangle];
             weighted_squares += cloth.rest_areas[triangle] * changes[triangle] * changes[triangle];
             weights += cloth.rest_areas[triangle];
         }

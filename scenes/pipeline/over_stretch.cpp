@@ -48,7 +48,7 @@ void OverStretch::measure(const ClothState& cloth, int frame) {
         const VertexPair edge = topology.edges()[e];
         const double rest_length = edge_length(cloth.rest_positions, edge);
         const double now = edge_length(cloth.positions, edge);
-        if (!(rest_length > 0.0 && now > kOverStretch * rest_length)) continue;
+        if (!(rest_length > 0.0 && now > over_stretch_ratio * rest_length)) continue;
         greatest_.resize(topology.triangle_count());
         for (std::uint32_t c = topology.edge_corner_offsets()[e]; c < topology.edge_corner_offsets()[e + 1]; ++c) {
             const std::uint32_t triangle = topology.edge_corners()[c] / 3;

@@ -9,7 +9,7 @@
 namespace apsl::scenes {
 
 /// Length over rest length above which an edge counts as over-stretched.
-inline constexpr double kOverStretch = 1.5;
+inline constexpr double over_stretch_ratio = 1.5;
 
 /// A triangle with an over-stretched edge, in the frame in which that edge was longest.
 struct OverStretchedTriangle {

@@ -29,44 +29,30 @@ void check_vertices(const ClothState& cloth, const PinGroup& group, std::size_t 
             fail(index, "vertex " + std::to_string(vertex) + " is out of range, the mesh has " +
                             std::to_string(cloth.inverse_masses.size()) + " vertices");
         }
-        if (cloth.inverse_masses[vertex] != 0.0) {
+        if (cloth.inverse_masses[vertex] != 0.0)
             fail(index, "vertex " + std::to_string(vertex) + " is not pinned in the cloth (expected inverse mass 0)");
-        }
     }
 }
 
 std::array<double, 3> centroid(const ClothState& cloth, const std::vector<std::uint32_t>& vertices) {
     const std::span<const double> rest_positions = cloth.rest_positions;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const std::uint32_t vertex : vertices) {
-        sum += vector_at(rest_positions, vertex);
-    }
-    if (!vertices.empty()) {
-        sum /= static_cast<double>(vertices.size());
-    }
+    for (const std::uint32_t vertex : vertices) sum += vector_at(rest_positions, vertex);
+    if (!vertices.empty()) sum /= static_cast<double>(vertices.size());
     return {sum.x(), sum.y(), sum.z()};
 }
 
 void check_motion(const PinMotion& motion, std::size_t index) {
-    if (!std::isfinite(motion.start) || !(motion.stop >= motion.start)) {
+    if (!std::isfinite(motion.start) || !(motion.stop >= motion.start))
         fail(index, "expected a finite start and stop ≥ start (s)");
-    }
     if (const auto* translation = std::get_if<PinTranslation>(&motion.path); translation != nullptr) {
-        if (!finite(translation->velocity)) {
-            fail(index, "the velocity is not finite");
-        }
+        if (!finite(translation->velocity)) fail(index, "the velocity is not finite");
     }
     if (const auto* rotation = std::get_if<PinRotation>(&motion.path); rotation != nullptr) {
-        if (!std::isfinite(rotation->degrees_per_second)) {
-            fail(index, "degrees_per_second is not finite");
-        }
-        if (rotation->center.has_value() && !finite(*rotation->center)) {
-            fail(index, "the center is not finite");
-        }
+        if (!std::isfinite(rotation->degrees_per_second)) fail(index, "degrees_per_second is not finite");
+        if (rotation->center.has_value() && !finite(*rotation->center)) fail(index, "the center is not finite");
         const double length = Eigen::Vector3d(rotation->axis.data()).stableNorm();
-        if (!std::isfinite(length) || length == 0.0) {
-            fail(index, "the axis of a rotation must be finite and not zero");
-        }
+        if (!std::isfinite(length) || length == 0.0) fail(index, "the axis of a rotation must be finite and not zero");
     }
 }
 
@@ -77,9 +63,8 @@ double phase(const PinMotion& motion, double time) {
 
 // Where the path has carried a rest position after `seconds` in motion.
 Eigen::Vector3d place(const PinMotion& motion, const Eigen::Vector3d& rest_position, double seconds) {
-    if (const auto* translation = std::get_if<PinTranslation>(&motion.path); translation != nullptr) {
+    if (const auto* translation = std::get_if<PinTranslation>(&motion.path); translation != nullptr)
         return rest_position + seconds * Eigen::Vector3d(translation->velocity.data());
-    }
     if (const auto* rotation = std::get_if<PinRotation>(&motion.path); rotation != nullptr) {
         const double angle = rotation->degrees_per_second * seconds * std::numbers::pi / 180.0;
         const Eigen::Vector3d axis = Eigen::Vector3d(rotation->axis.data()).stableNormalized();
@@ -90,15 +75,11 @@ Eigen::Vector3d place(const PinMotion& motion, const Eigen::Vector3d& rest_posit
 }
 
 bool moves(const PinMotion& motion) {
-    if (motion.stop == motion.start) {
-        return false;
-    }
-    if (const auto* translation = std::get_if<PinTranslation>(&motion.path); translation != nullptr) {
+    if (motion.stop == motion.start) return false;
+    if (const auto* translation = std::get_if<PinTranslation>(&motion.path); translation != nullptr)
         return translation->velocity != std::array<double, 3>{};
-    }
-    if (const auto* rotation = std::get_if<PinRotation>(&motion.path); rotation != nullptr) {
+    if (const auto* rotation = std::get_if<PinRotation>(&motion.path); rotation != nullptr)
         return rotation->degrees_per_second != 0.0;
-    }
     return false;
 }
 
@@ -106,9 +87,7 @@ bool moves(const PinMotion& motion) {
 
 std::vector<std::uint32_t> pinned_vertices(std::span<const PinGroup> groups) {
     std::vector<std::uint32_t> vertices;
-    for (const PinGroup& group : groups) {
-        vertices.insert(vertices.end(), group.vertices.begin(), group.vertices.end());
-    }
+    for (const PinGroup& group : groups) vertices.insert(vertices.end(), group.vertices.begin(), group.vertices.end());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
@@ -119,9 +98,8 @@ Pins::Pins(const ClothState& cloth, std::vector<PinGroup> groups) : groups_(std:
         PinGroup& group = groups_[index];
         check_vertices(cloth, group, index);
         check_motion(group.motion, index);
-        if (auto* rotation = std::get_if<PinRotation>(&group.motion.path); rotation != nullptr) {
+        if (auto* rotation = std::get_if<PinRotation>(&group.motion.path); rotation != nullptr)
             rotation->center = rotation->center.value_or(centroid(cloth, group.vertices));
-        }
     }
     // Each vertex stays with the last group that names it. After the centroids: those are of all a group names.
     std::vector<bool> taken(cloth.inverse_masses.size(), false);

@@ -21,9 +21,7 @@ struct Stretched {
 Stretched stretched(const Spring& spring, std::span<const double> positions) {
     const Eigen::Vector3d offset = vector_at(positions, spring.b) - vector_at(positions, spring.a);
     const double length = offset.norm();
-    if (length > 0.0) {
-        return {.direction = offset / length, .length = length};
-    }
+    if (length > 0.0) return {.direction = offset / length, .length = length};
     return {.direction = Eigen::Vector3d::Zero(), .length = 0.0};
 }
 
@@ -131,19 +129,14 @@ void SpringOperator::add_stiffness(std::span<const double> vector, std::span<dou
 }
 
 void SpringOperator::apply(std::span<const double> vector, std::span<double> result) const {
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        result[i] = inertia_[i / 3] * vector[i];
-    }
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = inertia_[i / 3] * vector[i];
     add_stiffness(vector, result, -1.0);
     clear_pinned(result);
 }
 
 void SpringOperator::clear_pinned(std::span<double> vector) const {
-    for (std::size_t vertex = 0; vertex < inertia_.size(); ++vertex) {
-        if (inertia_[vertex] == 0.0) {
-            vector_at(vector, vertex).setZero();
-        }
-    }
+    for (std::size_t vertex = 0; vertex < inertia_.size(); ++vertex)
+        if (inertia_[vertex] == 0.0) vector_at(vector, vertex).setZero();
 }
 
 void SpringOperator::precondition(std::span<const double> vector, std::span<double> result) const {

@@ -37,9 +37,7 @@ std::vector<Spring> stretch_springs(const Topology& topology, std::span<const do
     check(topology, rest_positions, stiffness);
     std::vector<Spring> springs;
     springs.reserve(topology.edges().size());
-    for (const auto& [a, b] : topology.edges()) {
-        springs.push_back(make_spring(a, b, rest_positions, stiffness));
-    }
+    for (const auto& [a, b] : topology.edges()) springs.push_back(make_spring(a, b, rest_positions, stiffness));
     return springs;
 }
 
@@ -55,9 +53,8 @@ std::vector<Spring> bending_springs(const Topology& topology, std::span<const do
             for (std::uint32_t second = first + 1; second < offsets[edge + 1]; ++second) {
                 const std::uint32_t a = vertex_at(corners[first]);
                 const std::uint32_t b = vertex_at(corners[second]);
-                if (a != b) {  // the same triangle given twice has nothing to bend
+                if (a != b)  // the same triangle given twice has nothing to bend
                     springs.push_back(make_spring(a, b, rest_positions, stiffness));
-                }
             }
         }
     }

@@ -41,9 +41,7 @@ private:
 
 Parts join_all(std::size_t vertex_count, std::span<const Spring> springs) {
     Parts parts(vertex_count);
-    for (const Spring& spring : springs) {
-        parts.join(spring.a, spring.b);
-    }
+    for (const Spring& spring : springs) parts.join(spring.a, spring.b);
     return parts;
 }
 
@@ -68,13 +66,11 @@ std::vector<bool> held_vertices(const Topology& topology, std::span<const Spring
         return Eigen::Vector3d(vector_at(rest_positions, spring.b) - vector_at(rest_positions, spring.a)).normalized();
     };
     for (std::uint32_t index = 0; index < springs.size(); ++index) {
-        for (const std::uint32_t vertex : {springs[index].a, springs[index].b}) {
-            if (first_spring[vertex] == no_spring) {
+        for (const std::uint32_t vertex : {springs[index].a, springs[index].b})
+            if (first_spring[vertex] == no_spring)
                 first_spring[vertex] = index;
-            } else if (direction(springs[first_spring[vertex]]).cross(direction(springs[index])).norm() > collinear) {
+            else if (direction(springs[first_spring[vertex]]).cross(direction(springs[index])).norm() > collinear)
                 held[vertex] = true;
-            }
-        }
     }
     const auto offsets = topology.edge_corner_offsets();
     for (std::size_t edge = 0; edge < topology.edges().size(); ++edge) {

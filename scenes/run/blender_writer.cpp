@@ -15,9 +15,8 @@ void write_rest_obj(const std::filesystem::path& file, const ClothState& cloth) 
         text << "v " << cloth.rest_positions[k] << ' ' << cloth.rest_positions[k + 1] << ' '
              << cloth.rest_positions[k + 2] << '\n';
     }
-    for (const Triangle& triangle : cloth.topology->triangles()) {
+    for (const Triangle& triangle : cloth.topology->triangles())
         text << "f " << triangle[0] + 1 << ' ' << triangle[1] + 1 << ' ' << triangle[2] + 1 << '\n';
-    }
     WholeFile output(file);
     output.write(text.str());
     output.commit();
@@ -40,8 +39,8 @@ void PointCache::add_frame(const ClothState& cloth) {
 }
 
 void PointCache::commit() {
-    constexpr std::int64_t kSamplesOffset = 28;
-    file_.overwrite(kSamplesOffset, {reinterpret_cast<const char*>(&samples_), sizeof samples_});
+    constexpr std::int64_t samples_offset = 28;
+    file_.overwrite(samples_offset, {reinterpret_cast<const char*>(&samples_), sizeof samples_});
     file_.commit();
 }
 

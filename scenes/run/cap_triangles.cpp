@@ -11,7 +11,7 @@ namespace apsl::scenes {
 namespace {
 
 // Of the longest edge. With a shorter edge the triangle is a needle, whose light vertices are told of.
-constexpr double kShortEdge = 0.1;
+constexpr double short_edge = 0.1;
 
 std::array<double, 3> sorted_edges(const ClothState& cloth, const Triangle& triangle) {
     std::array<double, 3> lengths{};
@@ -28,9 +28,9 @@ CapTriangles cap_triangles(const ClothState& cloth) {
     const auto triangles = cloth.topology->triangles();
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         const auto [shortest, middle, longest] = sorted_edges(cloth, triangles[t]);
-        if (!(shortest > kShortEdge * longest)) continue;
+        if (!(shortest > short_edge * longest)) continue;
         const double height = 2.0 * triangle_area(cloth.rest_positions, triangles[t]) / (longest * longest);
-        if (height < kCapHeight) ++caps.count;
+        if (height < cap_height) ++caps.count;
         if (height < caps.height) {
             caps.height = height;
             caps.flattest = t;

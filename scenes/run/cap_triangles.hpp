@@ -11,7 +11,7 @@
 namespace apsl::scenes {
 
 /// Height over longest edge below which a triangle without a short edge counts as a cap.
-inline constexpr double kCapHeight = 1.0 / 50.0;
+inline constexpr double cap_height = 1.0 / 50.0;
 
 /// Triangles with a corner close to the opposite edge, at rest. A small displacement of that corner is a large share of
 /// their area, whatever the vertices weigh.

@@ -42,17 +42,15 @@ void take_out_spikes(std::span<const std::uint32_t> corners, std::vector<std::ui
         polygon.push_back(vertex);
     }
     std::size_t begin = 0;
-    while (polygon.size() - begin >= 2) {
-        if (polygon.back() == polygon[begin]) {
+    while (polygon.size() - begin >= 2)
+        if (polygon.back() == polygon[begin])
             polygon.pop_back();
-        } else if (polygon[polygon.size() - 2] == polygon[begin]) {
+        else if (polygon[polygon.size() - 2] == polygon[begin])
             polygon.pop_back();  // the spike's end; the rest closes the ring
-        } else if (polygon.back() == polygon[begin + 1]) {
+        else if (polygon.back() == polygon[begin + 1])
             ++begin;
-        } else {
+        else
             break;
-        }
-    }
     polygon.erase(polygon.begin(), polygon.begin() + static_cast<std::ptrdiff_t>(begin));
 }
 

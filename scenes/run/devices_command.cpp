@@ -15,7 +15,7 @@ int devices_command() {
                     device.platform.c_str(), device.driver.c_str(), device.compute_units,
                     1e-9 * static_cast<double>(device.memory));
     }
-    return kExitDone;
+    return exit_done;
 }
 
 }  // namespace apsl::scenes

@@ -19,10 +19,10 @@ struct Demand {
     double clearance;
 };
 // Ears with a good shape first: what is left at last may be as thin as the polygon.
-constexpr std::array kDemands{Demand{1e-3, 1e-9}, Demand{1e-6, 1e-12}, Demand{1e-9, 1e-15}, Demand{0.0, 0.0}};
+constexpr std::array demands{Demand{1e-3, 1e-9}, Demand{1e-6, 1e-12}, Demand{1e-9, 1e-15}, Demand{0.0, 0.0}};
 // Of a fan, which is kept where it is fit for use.
-constexpr double kFanShape = 1e-6;
-constexpr std::size_t kMostTests = 100'000'000;
+constexpr double fan_shape = 1e-6;
+constexpr std::size_t most_tests = 100'000'000;
 
 double cross(const Point& a, const Point& b, const Point& c) {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -68,7 +68,7 @@ public:
         previous_.front() = points_.size() - 1;
         // A corner inside of an ear means one that is not convex inside of it, and corners only become sharper.
         for (std::size_t k = 0; k < points_.size(); ++k)
-            if (shape(points_[previous_[k]], points_[k], points_[next_[k]]) < kFanShape) blocking_.push_back(k);
+            if (shape(points_[previous_[k]], points_[k], points_[next_[k]]) < fan_shape) blocking_.push_back(k);
     }
 
     std::size_t left() const { return left_; }
@@ -120,9 +120,9 @@ PolygonCut clip_ears(Ring ring, std::span<const std::uint32_t> polygon, std::vec
     std::size_t tests = 0;
     while (ring.left() > 2) {
         bool found = false;
-        for (const Demand& demand : kDemands) {
+        for (const Demand& demand : demands) {
             for (std::size_t tried = 0; tried < ring.left() && !found; ++tried) {
-                if ((tests += ring.tests_of_an_ear()) > kMostTests) return PolygonCut::too_long;
+                if ((tests += ring.tests_of_an_ear()) > most_tests) return PolygonCut::too_long;
                 found = ring.is_ear(corner, demand);
                 if (!found) corner = ring.next(corner);
             }
@@ -139,7 +139,7 @@ PolygonCut clip_ears(Ring ring, std::span<const std::uint32_t> polygon, std::vec
 
 bool fan_is_fit(const std::vector<Point>& points) {
     for (std::size_t k = 1; k + 1 < points.size(); ++k)
-        if (!(shape(points[0], points[k], points[k + 1]) > kFanShape)) return false;
+        if (!(shape(points[0], points[k], points[k + 1]) > fan_shape)) return false;
     return !points.empty();
 }
 

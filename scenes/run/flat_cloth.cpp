@@ -7,8 +7,8 @@ namespace apsl::scenes {
 namespace {
 
 // A cloth that hangs in its plane narrows too, but keeps its areas.
-constexpr double kShortEdge = 0.8;
-constexpr double kAreaChange = 0.1;
+constexpr double short_edge = 0.8;
+constexpr double area_change = 0.1;
 
 bool lies_in_plane(const ClothState& cloth, std::size_t axis) {
     for (std::size_t k = axis; k < cloth.positions.size(); k += 3)
@@ -19,7 +19,7 @@ bool lies_in_plane(const ClothState& cloth, std::size_t axis) {
 }  // namespace
 
 std::optional<std::string> flat_cloth_warning(const ClothState& cloth, const RunSummary& summary) {
-    const bool pushed_together = summary.min_edge_stretch < kShortEdge && summary.max_area_change > kAreaChange;
+    const bool pushed_together = summary.min_edge_stretch < short_edge && summary.max_area_change > area_change;
     if (!pushed_together || cloth.positions.empty()) return std::nullopt;
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (lies_in_plane(cloth, axis))

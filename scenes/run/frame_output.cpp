@@ -18,9 +18,8 @@ bool is_ours(const std::string& name) {
 
 std::filesystem::path without_earlier_run(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> earlier;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
         if (entry.is_regular_file() && is_ours(entry.path().filename().string())) earlier.push_back(entry.path());
-    }
     std::error_code ignored;  // what cannot be removed cannot be replaced either, and that is reported
     for (const auto& file : earlier) std::filesystem::remove(file, ignored);
     return folder;

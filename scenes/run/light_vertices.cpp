@@ -13,7 +13,7 @@ namespace apsl::scenes {
 namespace {
 
 // Above this part of the median edge a short edge is no flaw of the mesh, and collapsing it would coarsen the cloth.
-constexpr double kShortEdge = 0.5;
+constexpr double short_edge = 0.5;
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -38,7 +38,7 @@ std::optional<double> collapse_length(const ClothState& cloth, double light_mass
         for (const std::uint32_t vertex : edge) shortest[vertex] = std::min(shortest[vertex], lengths.back());
     }
     if (lengths.empty()) return std::nullopt;
-    const double short_length = kShortEdge * median(lengths);
+    const double short_length = short_edge * median(lengths);
     double longest = 0.0;
     for (std::size_t v = 0; v < shortest.size(); ++v) {
         const bool light = cloth.inverse_masses[v] > 0.0 && cloth.masses[v] < light_mass;
@@ -69,8 +69,8 @@ LightVertices light_vertices(const ClothState& cloth) {
     const double middle = median(movable);
     light.share_of_median = cloth.masses[light.lightest] / middle;
     light.count = static_cast<std::size_t>(
-        std::count_if(movable.begin(), movable.end(), [&](double mass) { return mass < kLightMass * middle; }));
-    if (light.count > 0) light.shorter_than = collapse_length(cloth, kLightMass * middle);
+        std::count_if(movable.begin(), movable.end(), [&](double mass) { return mass < light_mass_ratio * middle; }));
+    if (light.count > 0) light.shorter_than = collapse_length(cloth, light_mass_ratio * middle);
     return light;
 }
 

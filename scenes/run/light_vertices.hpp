@@ -11,11 +11,11 @@
 namespace apsl::scenes {
 
 /// Share of the median mass below which a movable vertex counts as light.
-inline constexpr double kLightMass = 1.0 / 30.0;
+inline constexpr double light_mass_ratio = 1.0 / 30.0;
 
 /// Movable vertices that are too light for the forces that their neighbours pass on.
 struct LightVertices {
-    std::size_t count = 0;               ///< below kLightMass times the median
+    std::size_t count = 0;               ///< below light_mass_ratio times the median
     std::uint32_t lightest = 0;          ///< the movable vertex with the least mass, light or not
     double share_of_median = 1.0;        ///< its mass over the median, both of movable vertices
     std::optional<double> shorter_than;  ///< m: collapsing edges below this length removes light vertices

@@ -21,11 +21,10 @@ using namespace apsl::scenes;
 int wrong_input(std::string what) {
     // One line, whatever the message was made of.
     what = what.substr(0, what.find_last_not_of("\n\r ") + 1);
-    for (char& letter : what) {
+    for (char& letter : what)
         if (letter == '\n' || letter == '\r') letter = ' ';
-    }
     std::fprintf(stderr, "error: %s\n", what.c_str());
-    return kExitWrongInput;
+    return exit_wrong_input;
 }
 
 int parse_and_run(int argument_count, char** arguments) {

@@ -12,17 +12,17 @@
 namespace apsl::scenes {
 namespace {
 
-OwnedContext make_context(cl_device_id device) {
+host::ContextHandle make_context(cl_device_id device) {
     cl_int code = CL_SUCCESS;
-    OwnedContext context(clCreateContext(nullptr, 1, &device, nullptr, nullptr, &code));
+    host::ContextHandle context(clCreateContext(nullptr, 1, &device, nullptr, nullptr, &code));
     check_opencl(code, "clCreateContext");
     return context;
 }
 
-OwnedQueue make_queue(cl_context context, cl_device_id device, bool profile) {
+host::QueueHandle make_queue(cl_context context, cl_device_id device, bool profile) {
     cl_int code = CL_SUCCESS;
     const cl_command_queue_properties properties = profile ? CL_QUEUE_PROFILING_ENABLE : 0;
-    OwnedQueue queue(clCreateCommandQueue(context, device, properties, &code));
+    host::QueueHandle queue(clCreateCommandQueue(context, device, properties, &code));
     check_opencl(code, "clCreateCommandQueue");
     return queue;
 }
@@ -69,18 +69,16 @@ OpenClFilter::OpenClFilter(const OpenClDevice& device, const ClothState& cloth, 
     velocities_ = make_buffer(uploaded_velocities_, "velocities");
     inverse_masses_ = make_buffer(to_float(cloth.inverse_masses), "inverse masses");
     rest_areas_ = make_buffer(to_float(cloth.rest_areas), "rest areas");
-    if (!settings.regularization.empty()) {
-        regularization_ = make_buffer(settings.regularization, "regularization");
-    }
+    if (!settings.regularization.empty()) regularization_ = make_buffer(settings.regularization, "regularization");
     limiter_.set_profiling(profile);
 }
 
-OwnedBuffer OpenClFilter::make_buffer(const std::vector<float>& values, const std::string& name) {
+host::BufferHandle OpenClFilter::make_buffer(const std::vector<float>& values, const std::string& name) {
     cl_int code = CL_SUCCESS;
     const std::size_t bytes = values.size() * sizeof(float);
     // CL_MEM_COPY_HOST_PTR only reads what it is given.
-    OwnedBuffer buffer(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, bytes,
-                                      const_cast<float*>(values.data()), &code));
+    host::BufferHandle buffer(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, bytes,
+                                             const_cast<float*>(values.data()), &code));
     check_opencl(code, "allocating " + std::to_string(bytes) + " bytes of " + name);
     buffer_bytes_ += bytes;
     return buffer;
@@ -106,8 +104,8 @@ Stats OpenClFilter::filter(ClothState& cloth) {
                           .inverse_masses = {inverse_masses_.get()},
                           .rest_areas = {rest_areas_.get()},
                           .regularization = {regularization_.get()}};
-    const OwnedEvent filtered(limiter_.enqueue(queue_.get(), buffers, parameters_));
-    const OwnedEvent read(limiter_.read_stats(queue_.get(), {&stats_, 1}));
+    const host::EventHandle filtered(limiter_.enqueue(queue_.get(), buffers, parameters_));
+    const host::EventHandle read(limiter_.read_stats(queue_.get(), {&stats_, 1}));
     // The queue is in order: this read waits for all of the above.
     check_opencl(clEnqueueReadBuffer(queue_.get(), velocities_.get(), CL_TRUE, 0, bytes, filtered_velocities_.data(), 0,
                                      nullptr, nullptr),
@@ -116,9 +114,8 @@ Stats OpenClFilter::filter(ClothState& cloth) {
     // Only the filter's correction goes into the 64-bit velocities, not the rounding of the rest to 32 bits.
     for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
         if (cloth.inverse_masses[v] == 0.0) continue;
-        for (std::size_t k = 3 * v; k < 3 * v + 3; ++k) {
+        for (std::size_t k = 3 * v; k < 3 * v + 3; ++k)
             cloth.velocities[k] += static_cast<double>(filtered_velocities_[k]) - uploaded_velocities_[k];
-        }
     }
     return stats_;
 }

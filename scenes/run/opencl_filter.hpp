@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "host/handles.hpp"
 #include "pipeline/cloth_state.hpp"
+#include "run/check_opencl.hpp"
 #include "run/opencl_devices.hpp"
-#include "run/opencl_handles.hpp"
 #include "run/scene.hpp"
 
 #include <apsl/strain_limiter.hpp>
@@ -31,19 +32,19 @@ public:
     std::vector<KernelTime> kernel_times() { return limiter_.profile(); }
 
 private:
-    OwnedBuffer make_buffer(const std::vector<float>& values, const std::string& name);
+    host::BufferHandle make_buffer(const std::vector<float>& values, const std::string& name);
 
     std::string device_name_;
     Parameters parameters_;
-    OwnedContext context_;
-    OwnedQueue queue_;
+    host::ContextHandle context_;
+    host::QueueHandle queue_;
     StrainLimiter limiter_;
     std::size_t buffer_bytes_ = 0;
-    OwnedBuffer positions_;
-    OwnedBuffer velocities_;
-    OwnedBuffer inverse_masses_;
-    OwnedBuffer rest_areas_;
-    OwnedBuffer regularization_;
+    host::BufferHandle positions_;
+    host::BufferHandle velocities_;
+    host::BufferHandle inverse_masses_;
+    host::BufferHandle rest_areas_;
+    host::BufferHandle regularization_;
     std::vector<float> uploaded_positions_;   // [3V]
     std::vector<float> uploaded_velocities_;  // [3V]
     std::vector<float> filtered_velocities_;  // [3V]

@@ -53,12 +53,10 @@ void replace_other_kinds(Json& document, const std::vector<std::string>& path) {
     const std::vector<std::string>& kinds = path[0] == "mesh" ? meshes : integrators;
     if (path[0] != "mesh" && path[0] != "integrator") return;
     if (std::find(kinds.begin(), kinds.end(), path[1]) == kinds.end()) return;
-    for (const std::string& kind : kinds) {
+    for (const std::string& kind : kinds)
         if (kind != path[1]) document[path[0]].erase(kind);
-    }
-    if (path[0] == "mesh" && path[1] != "file") {
+    if (path[0] == "mesh" && path[1] != "file")
         for (const char* key : {"height", "weld"}) document[path[0]].erase(key);
-    }
 }
 
 }  // namespace
@@ -67,12 +65,11 @@ template <class Json>
 void override_scene(Json& document, const std::string& assignment) {
     const std::size_t equals = assignment.find('=');
     const std::vector<std::string> path = split_path(assignment.substr(0, equals));
-    if (equals == std::string::npos || std::find(path.begin(), path.end(), "") != path.end()) {
+    if (equals == std::string::npos || std::find(path.begin(), path.end(), "") != path.end())
         throw InputError("--set " + assignment + ": expected path=value, such as strain_limiting.regularization=1.05");
-    }
-    if (path.size() > kMaxSceneDepth) {
+    if (path.size() > max_scene_depth) {
         throw InputError("--set " + path[0] + "...: a path of " + std::to_string(path.size()) +
-                         " keys, expected at most " + std::to_string(kMaxSceneDepth));
+                         " keys, expected at most " + std::to_string(max_scene_depth));
     }
     if (!is_utf8(assignment)) throw InputError("--set " + assignment + ": expected text in UTF-8");
     const std::string text = assignment.substr(equals + 1);
@@ -101,9 +98,8 @@ void override_scene(Json& document, const std::string& assignment) {
         }
     }
     *place = std::move(value);
-    if (path == std::vector<std::string>{"mesh", "file"} && place->is_string()) {
+    if (path == std::vector<std::string>{"mesh", "file"} && place->is_string())
         *place = std::filesystem::absolute(place->template get<std::string>()).lexically_normal().string();
-    }
 }
 
 template void override_scene(nlohmann::json&, const std::string&);

@@ -20,8 +20,8 @@ public:
 
     void meet(Event event, const Json& parsed) {
         if (event == Event::object_start || event == Event::array_start) {
-            if (open_.size() == kMaxSceneDepth)
-                throw InputError(name_ + ": nested more than " + std::to_string(kMaxSceneDepth) +
+            if (open_.size() == max_scene_depth)
+                throw InputError(name_ + ": nested more than " + std::to_string(max_scene_depth) +
                                  " deep, expected a scene");
             open_.push_back({.is_array = event == Event::array_start, .keys = {}, .key = {}, .index = 0});
             return;
@@ -46,12 +46,11 @@ private:
 
     std::string path() const {
         std::string text;
-        for (const Open& open : open_) {
+        for (const Open& open : open_)
             if (open.is_array)
                 text.append("[").append(std::to_string(open.index)).append("]");
             else
                 text.append(text.empty() ? "" : ".").append(open.key);
-        }
         return text;
     }
 
@@ -73,9 +72,8 @@ Json parse_json(std::string_view text, const std::string& name) {
     } catch (const Json::exception& error) {
         std::string reason = error.what();  // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
         if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
-        for (char& letter : reason) {
+        for (char& letter : reason)
             if (letter == '\n' || letter == '\r') letter = ' ';
-        }
         throw InputError(name + ": not valid JSON: " + reason);
     }
 }

@@ -10,7 +10,7 @@
 namespace apsl::scenes {
 
 /// Objects and arrays within one another. What reads a scene further is recursive: more would use up the stack.
-inline constexpr std::size_t kMaxSceneDepth = 64;
+inline constexpr std::size_t max_scene_depth = 64;
 
 /// JSON in UTF-8, with or without a byte order mark. Throws InputError, beginning with `name`, for what is no JSON (the
 /// line is named), for a key that an object has twice, and for what is nested too deep for a scene.

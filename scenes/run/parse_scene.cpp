@@ -19,7 +19,7 @@
 namespace apsl::scenes {
 namespace {
 
-constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t max_count = std::numeric_limits<std::int32_t>::max();
 
 std::array<std::uint32_t, 2> counts(SceneObject& object, const std::string& key,
                                     const std::array<std::uint32_t, 2>& fallback,
@@ -147,7 +147,7 @@ void parse_field(SceneObject& object, const Field<Struct, Value>& field, Struct&
         value = static_cast<Value>(object.number(field.name, value, range_of(field.bounds)));
     } else {
         const auto least = static_cast<std::int64_t>(field.bounds.least);
-        const auto greatest = static_cast<std::int64_t>(std::min(field.bounds.greatest, double{kMaxCount}));
+        const auto greatest = static_cast<std::int64_t>(std::min(field.bounds.greatest, double{max_count}));
         value = static_cast<Value>(object.integer(field.name, value, least, greatest));
     }
 }
@@ -232,29 +232,23 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     if (!object.has("mesh")) object.value().fail("mesh is missing, expected one of grid, tube, file in it");
     scene.mesh = parse_mesh(SceneObject(object.find("mesh")), std::filesystem::path(file).parent_path());
     scene.density = object.number("density", scene.density, Range::above(0.0));
-    if (object.has("pins")) {
+    if (object.has("pins"))
         for (const SceneValue& pin : object.find("pins").entries()) scene.pins.push_back(parse_pin(SceneObject(pin)));
-    }
-    if (object.has("masses")) {
-        for (const SceneValue& masses : object.find("masses").entries()) {
+    if (object.has("masses"))
+        for (const SceneValue& masses : object.find("masses").entries())
             scene.masses.push_back(parse_mass_factor(SceneObject(masses)));
-        }
-    }
     if (object.has("start")) scene.start = parse_start(SceneObject(object.find("start")));
     scene.gravity = object.vector3("gravity", scene.gravity);
     scene.time_step = object.number("time_step", scene.time_step, Range::above(0.0));
-    scene.steps_per_frame = static_cast<int>(object.integer("steps_per_frame", scene.steps_per_frame, 1, kMaxCount));
-    scene.frames = static_cast<int>(object.integer("frames", scene.frames, 1, kMaxCount));
+    scene.steps_per_frame = static_cast<int>(object.integer("steps_per_frame", scene.steps_per_frame, 1, max_count));
+    scene.frames = static_cast<int>(object.integer("frames", scene.frames, 1, max_count));
     if (object.has("integrator")) scene.integrator = parse_integrator(SceneObject(object.find("integrator")));
     // null, as --set writes it, is none.
-    if (const SceneValue limiting = object.find("strain_limiting"); limiting.json && !limiting.json->is_null()) {
+    if (const SceneValue limiting = object.find("strain_limiting"); limiting.json && !limiting.json->is_null())
         scene.strain_limiting = parse_strain_limiting(SceneObject(limiting), scene.time_step);
-    }
-    if (object.has("colliders")) {
-        for (const SceneValue& collider : object.find("colliders").entries()) {
+    if (object.has("colliders"))
+        for (const SceneValue& collider : object.find("colliders").entries())
             scene.colliders.push_back(parse_collider(SceneObject(collider)));
-        }
-    }
     object.refuse_other_keys();
     return scene;
 }

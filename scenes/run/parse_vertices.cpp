@@ -7,7 +7,7 @@
 namespace apsl::scenes {
 namespace {
 
-constexpr std::int64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t max_index = std::numeric_limits<std::int32_t>::max();
 
 PinMotion parse_motion(SceneObject object) {
     PinMotion motion;
@@ -37,9 +37,8 @@ VertexSelection parse_selection(SceneObject& object) {
     if (value.json->is_array() && value.json->empty()) value.expected("at least one");
     if (kind == "vertices") {
         SelectedVertices selection;
-        for (const SceneValue& vertex : value.entries()) {
-            selection.vertices.push_back(static_cast<std::uint32_t>(vertex.integer(0, kMaxIndex)));
-        }
+        for (const SceneValue& vertex : value.entries())
+            selection.vertices.push_back(static_cast<std::uint32_t>(vertex.integer(0, max_index)));
         return selection;
     }
     if (kind == "corners") {

@@ -16,7 +16,7 @@ namespace apsl::scenes {
 namespace {
 
 // Of the cloth's extent. Layers of cloth lie farther apart, and what is the same number in a file lies nearer.
-constexpr double kOnePlace = 1e-6;
+constexpr double one_place = 1e-6;
 
 bool has_triangles(const Topology& topology, std::size_t vertex) {
     const auto offsets = topology.corner_offsets();
@@ -77,7 +77,7 @@ Pieces pieces_of(const ClothState& cloth) {
 std::optional<std::string> coincidence_warning(const ClothState& cloth, const Pieces& pieces) {
     const std::vector<double> positions = places(cloth);
     const double shortest = shortest_edge(cloth);
-    const double distance = std::min(kOnePlace * extent(positions), 0.5 * shortest);
+    const double distance = std::min(one_place * extent(positions), 0.5 * shortest);
     if (!(distance > 0.0) || !std::isfinite(distance)) return {};
     const std::vector<std::uint32_t> first = first_within(positions, distance);
     std::size_t coincident = 0;

@@ -14,7 +14,7 @@ struct NamedType {
     PlyType type;
 };
 
-constexpr NamedType kTypes[] = {
+constexpr NamedType types[] = {
     {"char", "int8", {1, false, true}},    {"uchar", "uint8", {1, false, false}},
     {"short", "int16", {2, false, true}},  {"ushort", "uint16", {2, false, false}},
     {"int", "int32", {4, false, true}},    {"uint", "uint32", {4, false, false}},
@@ -23,7 +23,7 @@ constexpr NamedType kTypes[] = {
 };
 
 std::optional<PlyType> type_named(std::string_view name) {
-    for (const NamedType& known : kTypes)
+    for (const NamedType& known : types)
         if (name == known.name || name == known.name_with_size) return known.type;
     return {};
 }

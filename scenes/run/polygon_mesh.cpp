@@ -9,7 +9,7 @@
 namespace apsl::scenes {
 namespace {
 
-constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
 std::size_t first_corner(const PolygonMesh& mesh, std::size_t face) {
     return face == 0 ? 0 : mesh.faces[face - 1].end;
@@ -24,7 +24,7 @@ std::span<const std::uint32_t> PolygonMesh::corners(std::size_t face) const {
 
 void PolygonMesh::add_corner(std::int64_t number, std::int64_t vertex) {
     numbers.push_back(number);
-    vertices.push_back(vertex < 0 || vertex >= kNoVertex ? kNoVertex : static_cast<std::uint32_t>(vertex));
+    vertices.push_back(vertex < 0 || vertex >= no_vertex ? no_vertex : static_cast<std::uint32_t>(vertex));
 }
 
 std::string PolygonMesh::where(std::size_t face) const {
@@ -45,9 +45,8 @@ void check_faces(const PolygonMesh& mesh) {
     std::size_t corner = 0;
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         const std::size_t corners = mesh.faces[face].end - corner;
-        if (corners < 3) {
+        if (corners < 3)
             throw InputError(mesh.where(face) + std::to_string(corners) + " vertices, expected at least 3");
-        }
         for (; corner < mesh.faces[face].end; ++corner) {
             if (mesh.vertices[corner] >= vertex_count) {
                 throw InputError(mesh.where(face) + "vertex " + std::to_string(mesh.numbers[corner]) +

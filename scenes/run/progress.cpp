@@ -19,9 +19,9 @@ Progress::~Progress() {
 void Progress::show(const FrameReport& frame) {
     const int done = frame.frame + 1;
     if (on_terminal_) {
-        constexpr int kWidth = 30;
-        const auto filled = static_cast<std::size_t>(static_cast<long long>(kWidth) * done / frames_);
-        const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
+        constexpr int width = 30;
+        const auto filled = static_cast<std::size_t>(static_cast<long long>(width) * done / frames_);
+        const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
         std::fprintf(stderr, "\r[%s] %d/%d frames, area change %.3g %%, %.3g ms a frame \033[K", bar.c_str(), done,
                      frames_, 100.0 * frame.max_area_change, 1e3 * frame.step_seconds);
         bar_drawn_ = true;

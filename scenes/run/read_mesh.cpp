@@ -26,9 +26,8 @@ void scale_to_height(PolygonMesh& mesh, double height) {
         lowest = std::min(lowest, mesh.positions[k]);
         highest = std::max(highest, mesh.positions[k]);
     }
-    if (!(highest > lowest)) {
+    if (!(highest > lowest))
         throw InputError(mesh.file + ": all vertices have the same y, mesh.height cannot scale that; leave it out");
-    }
     const double scale = height / (highest - lowest);
     for (double& coordinate : mesh.positions) coordinate *= scale;
 }
@@ -40,9 +39,8 @@ Mesh read_mesh(const MeshFile& source) {
     const std::string bytes = read_file(source.file, "mesh");
     std::string extension = source.file.extension().string();
     for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    if (extension != ".obj" && extension != ".ply") {
+    if (extension != ".obj" && extension != ".ply")
         throw InputError(file + ": unknown kind of mesh file, expected .obj or .ply");
-    }
     const std::string_view contents = without_byte_order_mark(bytes, file);
     PolygonMesh polygons = extension == ".obj" ? read_obj(contents, file) : read_ply(contents, file);
     if (polygons.positions.empty()) throw InputError(file + ": has no vertices");

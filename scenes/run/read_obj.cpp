@@ -39,9 +39,8 @@ public:
         // Elsewhere, as in a name or a comment, a backslash is a letter like any other.
         if (statement.key != "v" && statement.key != "f") return statement;
         joined_.clear();
-        for (part = statement.rest; goes_on(part); part = without_comment(take_line(contents_)), ++lines_) {
+        for (part = statement.rest; goes_on(part); part = without_comment(take_line(contents_)), ++lines_)
             joined_.append(part.substr(0, part.find_last_of('\\'))).append(" ");
-        }
         statement.rest = joined_.append(part);
         return statement;
     }
@@ -67,22 +66,21 @@ void add_vertex(PolygonMesh& mesh, const Statement& statement) {
     std::string_view coordinates = statement.rest;
     for (int axis = 0; axis < 3; ++axis) {
         double coordinate = 0.0;
-        if (!parse_number(take_word(coordinates), coordinate) || !std::isfinite(coordinate)) {
+        if (!parse_number(take_word(coordinates), coordinate) || !std::isfinite(coordinate))
             refuse(mesh.file, statement, "expected three finite coordinates after v, got " + quoted(statement.line));
-        }
         mesh.positions.push_back(coordinate);
     }
 }
 
 // What other programs write beside vertices and faces, and this one passes over.
-constexpr std::string_view kOtherKeys[] = {
+constexpr std::string_view other_keys[] = {
     "vt",     "vn",    "vp",   "p",     "l",        "g",        "s",    "mg",     "o",      "usemtl",     "mtllib",
     "cstype", "deg",   "bmat", "step",  "curv",     "curv2",    "surf", "parm",   "trim",   "hole",       "scrv",
     "sp",     "end",   "con",  "bevel", "c_interp", "d_interp", "lod",  "usemap", "maplib", "shadow_obj", "trace_obj",
     "ctech",  "stech", "call", "csh",   "bsp",      "bzp",      "cdc",  "cdp",    "res"};
 
 bool is_other_key(std::string_view key) {
-    return key.empty() || std::find(std::begin(kOtherKeys), std::end(kOtherKeys), key) != std::end(kOtherKeys);
+    return key.empty() || std::find(std::begin(other_keys), std::end(other_keys), key) != std::end(other_keys);
 }
 
 // v, v/vt, v//vn or v/vt/vn: only v counts, but the others are numbers too.
@@ -131,13 +129,12 @@ PolygonMesh read_obj(std::string_view contents, const std::string& file) {
     std::string first_unknown;
     while (!statements.at_end()) {
         const Statement statement = statements.take();
-        if (statement.key == "v") {
+        if (statement.key == "v")
             add_vertex(mesh, statement);
-        } else if (statement.key == "f") {
+        else if (statement.key == "f")
             add_face(mesh, statement);
-        } else if (!is_other_key(statement.key) && unknown++ == 0) {
+        else if (!is_other_key(statement.key) && unknown++ == 0)
             first_unknown = "line " + std::to_string(statement.number) + ", " + quoted(statement.line);
-        }
     }
     if (unknown > 0) {
         mesh.warnings.push_back(file + ": lines that OBJ does not have: " + std::to_string(unknown) +

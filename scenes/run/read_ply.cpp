@@ -28,7 +28,7 @@ public:
     /// Behind the last number there is at most a line end; who counted wrong left faces out.
     void check_end() {
         const std::size_t left = rest_.size();
-        const std::string_view word = take_word(rest_, kBlanks);
+        const std::string_view word = take_word(rest_, blanks);
         if (word.empty()) return;
         if (format_ == PlyFormat::ascii) refuse("goes on behind what its header counts, with " + quoted(word));
         refuse("goes on behind what its header counts, for " + std::to_string(left) + " bytes");
@@ -50,10 +50,10 @@ public:
     std::size_t bytes_left() const { return rest_.size(); }
 
 private:
-    static constexpr std::string_view kBlanks = " \t\r\n";
+    static constexpr std::string_view blanks = " \t\r\n";
 
     double next_word() {
-        const std::string_view word = take_word(rest_, kBlanks);
+        const std::string_view word = take_word(rest_, blanks);
         double number = 0.0;
         if (word.empty()) refuse("ends before its last number");
         if (!parse_number(word, number)) refuse("expected a number, got " + quoted(word));

@@ -40,7 +40,7 @@ nlohmann::ordered_json to_json(const FrameReport& frame) {
                                 {"max_speed", frame.max_speed},
                                 {"energy", to_json(frame.energy)},
                                 {"sub_steps", frame.sub_steps},
-                                {"cg_iterations", frame.cg_iterations},
+                                {"iterations", frame.iterations},
                                 {"integrator_seconds", frame.integrator_seconds},
                                 {"filter_seconds", frame.filter_seconds},
                                 {"collision_seconds", frame.collision_seconds},
@@ -57,7 +57,7 @@ nlohmann::ordered_json to_json(const RunSummary& summary) {
                                 {"max_edge_stretch", summary.max_edge_stretch},
                                 {"min_edge_stretch", summary.min_edge_stretch},
                                 {"solves", summary.solves},
-                                {"cg_iterations_per_solve", summary.cg_iterations_per_solve},
+                                {"iterations_per_solve", summary.iterations_per_solve},
                                 {"integrator_seconds_per_frame", summary.integrator_seconds_per_frame},
                                 {"filter_seconds_per_frame", summary.filter_seconds_per_frame},
                                 {"collision_seconds_per_frame", summary.collision_seconds_per_frame},
@@ -76,7 +76,7 @@ nlohmann::ordered_json to_json(const OverStretchReport& report) {
                              {"area_change", worst.area_change},
                              {"why", why}});
     }
-    return {{"above", kOverStretch}, {"count", report.count}, {"triangles", triangles}};
+    return {{"above", over_stretch_ratio}, {"count", report.count}, {"triangles", triangles}};
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ OverStretchReport describe(const OverStretch& over_stretch, const ClothState& cl
 RunSummary summarize(const std::vector<FrameReport>& frames) {
     RunSummary summary;
     if (frames.empty()) return summary;
-    std::int64_t cg_iterations = 0;
+    std::int64_t iterations = 0;
     double squares = 0.0;
     for (const FrameReport& frame : frames) {
         summary.max_area_change = std::max(summary.max_area_change, frame.max_area_change);
@@ -103,7 +103,7 @@ RunSummary summarize(const std::vector<FrameReport>& frames) {
         summary.max_edge_stretch = std::max(summary.max_edge_stretch, frame.max_edge_stretch);
         summary.min_edge_stretch = std::min(summary.min_edge_stretch, frame.min_edge_stretch);
         summary.solves += frame.sub_steps;
-        cg_iterations += frame.cg_iterations;
+        iterations += frame.iterations;
         summary.status = std::max(summary.status, frame.status);
         summary.raised_vertices = std::max(summary.raised_vertices, frame.raised_vertices);
         summary.greatest_mass_ratio = std::max(summary.greatest_mass_ratio, frame.greatest_mass_ratio);
@@ -111,9 +111,8 @@ RunSummary summarize(const std::vector<FrameReport>& frames) {
             summary.worsened = frame.worsened;
     }
     summary.rms_area_change = std::sqrt(squares / static_cast<double>(frames.size()));
-    if (summary.solves > 0) {
-        summary.cg_iterations_per_solve = static_cast<double>(cg_iterations) / static_cast<double>(summary.solves);
-    }
+    if (summary.solves > 0)
+        summary.iterations_per_solve = static_cast<double>(iterations) / static_cast<double>(summary.solves);
     summary.integrator_seconds_per_frame = median(frames, &FrameReport::integrator_seconds);
     summary.filter_seconds_per_frame = median(frames, &FrameReport::filter_seconds);
     summary.collision_seconds_per_frame = median(frames, &FrameReport::collision_seconds);
@@ -175,9 +174,8 @@ nlohmann::ordered_json to_json(const RunReport& report) {
     }
     json["warnings"] = report.warnings;
     json["kernels"] = nlohmann::ordered_json::array();
-    for (const KernelReport& kernel : report.kernels) {
+    for (const KernelReport& kernel : report.kernels)
         json["kernels"].push_back({{"name", kernel.name}, {"launches", kernel.launches}, {"seconds", kernel.seconds}});
-    }
     return json;
 }
 

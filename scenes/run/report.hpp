@@ -40,7 +40,7 @@ struct FrameReport {
     double max_speed = 0.0;  ///< m/s, of the free vertices at the end of the frame
     Energy energy;           ///< at the end of the frame
     std::int64_t sub_steps = 0;
-    std::int64_t cg_iterations = 0;
+    std::int64_t iterations = 0;
     double integrator_seconds = 0.0;
     double filter_seconds = 0.0;  ///< with the transfers to and from the device
     double collision_seconds = 0.0;
@@ -59,7 +59,7 @@ struct Breakdown {
     std::string what;
 };
 
-/// Triangles with an edge that was longer than kOverStretch times its rest length in the run.
+/// Triangles with an edge that was longer than over_stretch_ratio times its rest length in the run.
 struct OverStretchReport {
     struct Entry {
         OverStretchedTriangle worst;
@@ -104,7 +104,7 @@ struct RunSummary {
     double max_edge_stretch = 1.0;
     double min_edge_stretch = 1.0;
     std::int64_t solves = 0;
-    double cg_iterations_per_solve = 0.0;
+    double iterations_per_solve = 0.0;
     double integrator_seconds_per_frame = 0.0;
     double filter_seconds_per_frame = 0.0;
     double collision_seconds_per_frame = 0.0;

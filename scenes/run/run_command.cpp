@@ -93,9 +93,8 @@ bool simulate(Simulation& simulation, int frames, std::optional<FrameOutput>& ou
 }
 
 void add_kernel_times(OpenClFilter& filter, RunReport& report) {
-    for (KernelTime& kernel : filter.kernel_times()) {
+    for (KernelTime& kernel : filter.kernel_times())
         report.kernels.push_back({std::move(kernel.name), kernel.launches, kernel.seconds});
-    }
 }
 
 }  // namespace
@@ -129,11 +128,10 @@ int run_command(const RunOptions& options) {
     if (!complete && !report.breakdown) {
         std::fprintf(stderr, "interrupted after %zu of %d frames; no report is written\n", report.frames.size(),
                      scene.frames);
-        return kExitInterrupted;
+        return exit_interrupted;
     }
-    if (auto* opencl = std::get_if<OpenClFilter>(&simulation.filter()); opencl != nullptr && options.profile) {
+    if (auto* opencl = std::get_if<OpenClFilter>(&simulation.filter()); opencl != nullptr && options.profile)
         add_kernel_times(*opencl, report);
-    }
 
     report.over_stretch = describe(simulation.over_stretch(), simulation.cloth());
     const std::vector<std::string> late = late_warnings(simulation, report);
@@ -157,9 +155,9 @@ int run_command(const RunOptions& options) {
                      "steps_per_frame, softer springs or a larger regularization\n",
                      report.scene.c_str(), report.breakdown->frame, report.breakdown->step,
                      report.breakdown->stage.c_str(), report.breakdown->what.c_str());
-        return kExitBrokeDown;
+        return exit_broke_down;
     }
-    return kExitDone;
+    return exit_done;
 }
 
 }  // namespace apsl::scenes

@@ -27,17 +27,16 @@ Mesh mesh_of(const MeshFile& source) {
 }
 
 // A triangle this much smaller than the mean is nearly always a flaw of the mesh, and its area change is mostly noise.
-constexpr double kSmallRestArea = 1e-6;
+constexpr double small_rest_area = 1e-6;
 
 void check_rest_areas(const std::vector<double>& rest_areas, const std::string& name,
                       std::vector<std::string>& warnings) {
     const double mean = std::reduce(rest_areas.begin(), rest_areas.end()) / static_cast<double>(rest_areas.size());
     std::size_t small = 0;
     for (std::size_t a = 0; a < rest_areas.size(); ++a) {
-        if (!(rest_areas[a] > 0.0)) {
+        if (!(rest_areas[a] > 0.0))
             throw InputError(name + ": triangle " + std::to_string(a) + " has rest area 0, expected an area > 0");
-        }
-        if (rest_areas[a] < kSmallRestArea * mean) ++small;
+        if (rest_areas[a] < small_rest_area * mean) ++small;
     }
     if (small > 0) {
         warnings.push_back(name + ": triangles with less than a millionth of the mean rest area: " +

@@ -27,9 +27,8 @@ std::string limit(double value) {
 std::string described(const Range& range) {
     std::string text;
     if (std::isfinite(range.min)) text += (range.min_excluded ? " > " : " ≥ ") + limit(range.min);
-    if (std::isfinite(range.max)) {
+    if (std::isfinite(range.max))
         text += (text.empty() ? "" : " and") + std::string(range.max_excluded ? " < " : " ≤ ") + limit(range.max);
-    }
     return text;
 }
 
@@ -57,9 +56,8 @@ double SceneValue::number(const Range& range) const {
 
 std::int64_t SceneValue::integer(std::int64_t min, std::int64_t max) const {
     const double value = json->is_number() ? json->get<double>() : std::numeric_limits<double>::quiet_NaN();
-    if (!(value == std::floor(value)) || value < static_cast<double>(min) || value > static_cast<double>(max)) {
+    if (!(value == std::floor(value)) || value < static_cast<double>(min) || value > static_cast<double>(max))
         expected("a whole number from " + std::to_string(min) + " to " + std::to_string(max));
-    }
     return static_cast<std::int64_t>(value);
 }
 
@@ -77,9 +75,8 @@ std::array<double, 3> SceneValue::vector3() const {
 std::vector<SceneValue> SceneValue::entries() const {
     if (!json->is_array()) expected("an array");
     std::vector<SceneValue> values;
-    for (std::size_t k = 0; k < json->size(); ++k) {
+    for (std::size_t k = 0; k < json->size(); ++k)
         values.push_back({&(*json)[k], file, path + "[" + std::to_string(k) + "]"});
-    }
     return values;
 }
 
@@ -110,9 +107,8 @@ std::array<double, 3> SceneObject::vector3(const std::string& key, const std::ar
 
 std::string SceneObject::only_one_of(const std::vector<std::string>& keys) {
     std::vector<std::string> present;
-    for (const std::string& key : keys) {
+    for (const std::string& key : keys)
         if (has(key)) present.push_back(key);
-    }
     refuse_other_keys();
     if (present.empty()) value_.fail("is missing what it is, expected " + one_of(keys));
     if (present.size() > 1) value_.fail("has both " + present[0] + " and " + present[1] + ", expected " + one_of(keys));

@@ -13,9 +13,8 @@ SceneSprings springs_of(const NoIntegrator&, const Scene&, const ClothState&) {
 SceneSprings springs_of(const ImplicitSpringsIntegrator& implicit, const Scene&, const ClothState& cloth) {
     const Topology& topology = *cloth.topology;
     SceneSprings made{.springs = {}, .damping = implicit.damping, .warnings = {}};
-    if (implicit.stretch_stiffness > 0.0) {
+    if (implicit.stretch_stiffness > 0.0)
         made.springs = stretch_springs(topology, cloth.rest_positions, implicit.stretch_stiffness);
-    }
     if (implicit.bend_stiffness > 0.0) {
         const auto bending = bending_springs(topology, cloth.rest_positions, implicit.bend_stiffness);
         made.springs.insert(made.springs.end(), bending.begin(), bending.end());

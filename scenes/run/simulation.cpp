@@ -37,7 +37,7 @@ std::string first_offender(const Stats& stats) {
 // Of one call of the filter.
 void note_stats(const Stats& stats, int frame, int step, FrameReport& report) {
     report.sub_steps += stats.sub_steps;
-    report.cg_iterations += stats.cg_iterations;
+    report.iterations += stats.iterations;
     report.status = std::max(report.status, stats.status);
     report.raised_vertices = std::max(report.raised_vertices, stats.raised_vertices);
     report.greatest_mass_ratio = std::max(report.greatest_mass_ratio, static_cast<double>(stats.greatest_mass_ratio));
@@ -79,11 +79,10 @@ void Simulation::name_stages(const Scene& scene) {
     if (moving_pins_) stages_.emplace_back("pin_motion");
     if (std::holds_alternative<ImplicitSpringsIntegrator>(scene.integrator)) stages_.emplace_back("implicit_springs");
     if (std::holds_alternative<StandAloneIntegrator>(scene.integrator)) stages_.emplace_back("stand_alone");
-    if (const auto* custom = std::get_if<CustomFilter>(&filter_)) {
+    if (const auto* custom = std::get_if<CustomFilter>(&filter_))
         stages_.push_back(custom->name);
-    } else if (scene.strain_limiting) {
+    else if (scene.strain_limiting)
         stages_.emplace_back("strain_limiting");
-    }
     if (!scene.colliders.empty()) stages_.emplace_back("colliders");
 }
 
@@ -155,13 +154,12 @@ void Simulation::run_step(int step, FrameReport& report) {
     }
     advance_positions(cloth_, time_step_);
     report.step_seconds += after_filter.seconds();
-    if (const auto vertex = first_not_finite(cloth_.positions)) {
+    if (const auto vertex = first_not_finite(cloth_.positions))
         return break_down(step, "advance", "position of vertex " + std::to_string(*vertex) + " is not finite", report);
-    }
     const EdgeStretch stretch = edge_stretch(cloth_);
     report.max_edge_stretch = std::max(report.max_edge_stretch, stretch.max);
     report.min_edge_stretch = std::min(report.min_edge_stretch, stretch.min);
-    if (stretch.max > kOverStretch) over_stretch_.measure(cloth_, frame_);
+    if (stretch.max > over_stretch_ratio) over_stretch_.measure(cloth_, frame_);
 }
 
 Energy Simulation::energy() const {

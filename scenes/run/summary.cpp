@@ -54,8 +54,8 @@ std::string summary_text(const RunReport& report) {
         text += format(
             "  over-stretched         %zu triangles with an edge beyond %.1f times; triangle %u at %.2f times, "
             "area off by %.2f %%, %s\n",
-            report.over_stretch.count, kOverStretch, worst.triangle, worst.edge_stretch, 100.0 * worst.area_change,
-            why.c_str());
+            report.over_stretch.count, over_stretch_ratio, worst.triangle, worst.edge_stretch,
+            100.0 * worst.area_change, why.c_str());
     }
     if (summary.raised_vertices > 0) {
         text += format(
@@ -74,15 +74,14 @@ std::string summary_text(const RunReport& report) {
             100.0 * summary.worsened->initial_area_change);
     }
     if (filtered) {
-        text += format("  iterations             %.1f a solve, %lld solves\n", summary.cg_iterations_per_solve,
+        text += format("  iterations             %.1f a solve, %lld solves\n", summary.iterations_per_solve,
                        static_cast<long long>(summary.solves));
     }
     text += format("  time a frame           %.2f ms in all; integration %.2f ms", 1e3 * summary.step_seconds_per_frame,
                    1e3 * summary.integrator_seconds_per_frame);
     if (filtered) text += format(", strain limiting %.2f ms", 1e3 * summary.filter_seconds_per_frame);
-    if (summary.collision_seconds_per_frame > 0.0) {
+    if (summary.collision_seconds_per_frame > 0.0)
         text += format(", collisions %.2f ms", 1e3 * summary.collision_seconds_per_frame);
-    }
     text += " (medians)\n  status                 " + status_name(summary.status) + "\n";
     for (const KernelReport& kernel : report.kernels) {
         text += format("  %-30s %8lld launches %10.3f ms\n", kernel.name.c_str(),

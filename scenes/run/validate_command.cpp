@@ -36,7 +36,7 @@ int validate_command(const std::filesystem::path& file, const std::vector<std::s
     std::printf("\n");
     warnings.insert(warnings.end(), simulation.warnings().begin(), simulation.warnings().end());
     for (const std::string& line : warnings) std::fprintf(stderr, "warning: %s\n", line.c_str());
-    return kExitDone;
+    return exit_done;
 }
 
 }  // namespace apsl::scenes

@@ -10,9 +10,8 @@ namespace apsl::scenes {
 
 WholeFile::WholeFile(std::filesystem::path place) : place_(std::move(place)), temporary_(place_.string() + ".partial") {
     // Never put a file in the place of a device or a pipe, least of all as root.
-    if (std::filesystem::exists(place_) && !std::filesystem::is_regular_file(place_)) {
+    if (std::filesystem::exists(place_) && !std::filesystem::is_regular_file(place_))
         throw InputError(place_.string() + ": exists and is no plain file, expected a place for one");
-    }
     stream_.open(temporary_, std::ios::binary | std::ios::trunc);
     if (!stream_) throw InputError(place_.string() + ": cannot be written, expected a writable folder");
 }
@@ -47,18 +46,16 @@ void WholeFile::check() const {
 }
 
 void check_file_place(const std::filesystem::path& file) {
-    if (!file.parent_path().empty() && !std::filesystem::is_directory(file.parent_path())) {
+    if (!file.parent_path().empty() && !std::filesystem::is_directory(file.parent_path()))
         throw InputError(file.string() + ": no such folder, expected one that the file can be written to");
-    }
     WholeFile probe(file);  // not committed: nothing stays
 }
 
 void make_writable_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error || !std::filesystem::is_directory(folder)) {
+    if (error || !std::filesystem::is_directory(folder))
         throw InputError(folder.string() + ": cannot be made a folder" + (error ? ": " + error.message() : ""));
-    }
     WholeFile probe(folder / ".apsl_probe");  // not committed: nothing stays
 }
 

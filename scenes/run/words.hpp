@@ -16,11 +16,10 @@ namespace apsl::scenes {
 inline std::string_view take_line(std::string_view& rest) {
     const std::size_t end = rest.find_first_of("\r\n");
     const std::string_view line = rest.substr(0, end);
-    if (end == std::string_view::npos) {
+    if (end == std::string_view::npos)
         rest = {};
-    } else {
+    else
         rest.remove_prefix(end + (rest.substr(end).starts_with("\r\n") ? 2 : 1));
-    }
     return line;
 }
 

@@ -4,7 +4,7 @@
 namespace apsl::scenes {
 namespace {
 
-constexpr std::size_t kWidth = 120;
+constexpr std::size_t width = 120;
 
 using Json = nlohmann::ordered_json;
 
@@ -23,7 +23,7 @@ std::string on_one_line(const Json& value) {
 std::string text_of(const Json& value, std::size_t indentation, std::size_t used) {
     std::string line = on_one_line(value);
     const bool whole_scene = indentation == 0;
-    if (!value.is_structured() || value.empty() || (!whole_scene && used + line.size() < kWidth)) return line;
+    if (!value.is_structured() || value.empty() || (!whole_scene && used + line.size() < width)) return line;
     std::string text(1, value.is_object() ? '{' : '[');
     const std::string margin(indentation + 2, ' ');
     bool first = true;

@@ -19,7 +19,7 @@ namespace {
 
 using Document = nlohmann::ordered_json;
 
-const auto kToTheEnd = [](const Trial&) { return false; };
+const auto to_the_end = [](const Trial&) { return false; };
 
 // What was tried, a line each as it is done.
 class Table {
@@ -71,7 +71,7 @@ struct Tuning {
 };
 
 std::optional<Trial> whole_run(const Tuning& tuning, const Document& document) {
-    return run_trial(document, tuning.file, tuning.scene.frames, tuning.device, kToTheEnd);
+    return run_trial(document, tuning.file, tuning.scene.frames, tuning.device, to_the_end);
 }
 
 // Whether the target holds when bending is left out. None: interrupted.
@@ -84,9 +84,7 @@ std::optional<bool> holds_without_bending(const Tuning& tuning, Document documen
 
 // What the tuned scene could do without, by trying: a line each. False where it was interrupted.
 bool tell_what_can_go(const Tuning& tuning, const Document& tuned, const Trial& best, bool limiter_needed) {
-    if (!limiter_needed) {
-        std::fprintf(tuning.stream, "could go: strain_limiting, the springs alone meet the target\n");
-    }
+    if (!limiter_needed) std::fprintf(tuning.stream, "could go: strain_limiting, the springs alone meet the target\n");
     const auto* springs = std::get_if<ImplicitSpringsIntegrator>(&tuning.scene.integrator);
     if (springs != nullptr && springs->bend_stiffness > 0.0) {
         const std::optional<bool> holds = holds_without_bending(tuning, tuned);
@@ -103,9 +101,8 @@ bool tell_what_can_go(const Tuning& tuning, const Document& tuned, const Trial& 
         const std::optional<Trial> trial = whole_run(tuning, without);
         if (!trial) return false;
         // Bit for bit the same motion: a single contact would show.
-        if (trial->positions == best.positions) {
+        if (trial->positions == best.positions)
             std::fprintf(tuning.stream, "could go: colliders, the cloth never touches them\n");
-        }
     }
     return true;
 }
@@ -151,7 +148,7 @@ bool names_a_solver(const Document& document) {
 
 int interruption() {
     std::fprintf(stderr, "interrupted; no scene is written\n");
-    return kExitInterrupted;
+    return exit_interrupted;
 }
 
 }  // namespace
@@ -185,10 +182,10 @@ int tune_command(const TuneOptions& options) {
     table.add(*best, tuning.goal);
     if (!tell_what_can_go(tuning, tuned, *best, !tuning.goal.meets_target(*without_limiter))) return interruption();
     write_scene(tuned, options);
-    if (tuning.goal.meets_target(*best) && tuning.goal.within_budget(*best)) return kExitDone;
+    if (tuning.goal.meets_target(*best) && tuning.goal.within_budget(*best)) return exit_done;
     std::fprintf(stderr, "error: %s: no settings tried meet %.3g %% area change%s; the best are written\n",
                  tuning.file.c_str(), 100.0 * options.target, options.budget_ms ? " within the budget" : "");
-    return kExitBrokeDown;
+    return exit_broke_down;
 }
 
 }  // namespace apsl::scenes

@@ -12,7 +12,7 @@
 namespace apsl::scenes {
 namespace {
 
-constexpr std::array kSubSteps{1, 2, 3, 5, 8, 12, 20, 32, 50};
+constexpr std::array tried_sub_steps{1, 2, 3, 5, 8, 12, 20, 32, 50};
 
 // What a number of sub-steps is tried with: α of the first one, 0 where all are alike, and of the last.
 struct Scheme {
@@ -24,16 +24,17 @@ constexpr auto cg = Solver::conjugate_gradient;
 constexpr auto chebyshev = Solver::chebyshev;
 constexpr auto whole_step = Stepping::whole_step;
 constexpr auto small_steps = Stepping::small_steps;
-constexpr std::array kSchemes{Scheme{cg, whole_step, 0.0f, 1.2f},          Scheme{cg, whole_step, 0.0f, 1.1f},
-                              Scheme{cg, whole_step, 0.0f, 1.05f},         Scheme{cg, whole_step, 0.0f, 1.02f},
-                              Scheme{cg, whole_step, 0.0f, 1.01f},         Scheme{cg, whole_step, 1.02f, 1.2f},
-                              Scheme{cg, whole_step, 1.005f, 1.2f},        Scheme{cg, whole_step, 1.005f, 2.0f},
-                              Scheme{cg, small_steps, 0.0f, 1.2f},         Scheme{cg, small_steps, 1.1f, 1.4f},
-                              Scheme{cg, small_steps, 0.0f, 1.05f},        Scheme{chebyshev, small_steps, 0.0f, 1.2f},
-                              Scheme{chebyshev, small_steps, 0.0f, 1.05f}, Scheme{chebyshev, whole_step, 1.01f, 1.2f}};
-constexpr float kSmallStepsTolerance = 0.03f;  // CG: they need tighter solves
-constexpr std::array kStepFactors{1, 2, 4, 8};
-constexpr std::size_t kMaxConfirmations = 6;
+constexpr std::array all_schemes{
+    Scheme{cg, whole_step, 0.0f, 1.2f},          Scheme{cg, whole_step, 0.0f, 1.1f},
+    Scheme{cg, whole_step, 0.0f, 1.05f},         Scheme{cg, whole_step, 0.0f, 1.02f},
+    Scheme{cg, whole_step, 0.0f, 1.01f},         Scheme{cg, whole_step, 1.02f, 1.2f},
+    Scheme{cg, whole_step, 1.005f, 1.2f},        Scheme{cg, whole_step, 1.005f, 2.0f},
+    Scheme{cg, small_steps, 0.0f, 1.2f},         Scheme{cg, small_steps, 1.1f, 1.4f},
+    Scheme{cg, small_steps, 0.0f, 1.05f},        Scheme{chebyshev, small_steps, 0.0f, 1.2f},
+    Scheme{chebyshev, small_steps, 0.0f, 1.05f}, Scheme{chebyshev, whole_step, 1.01f, 1.2f}};
+constexpr float small_steps_tolerance = 0.03f;  // CG: they need tighter solves
+constexpr std::array step_factors{1, 2, 4, 8};
+constexpr std::size_t max_confirmations = 6;
 
 struct Interrupted {};
 
@@ -42,7 +43,7 @@ void set_sub_steps(LimiterSettings& settings, int sub_steps) {
     parameters.sub_steps = sub_steps;
     // Small steps gain little from them.
     const bool pays = parameters.first_regularization > 0.0f && parameters.stepping != small_steps;
-    options.kept_pressures = pays && options.solver == cg ? static_cast<std::uint32_t>(sub_steps) : 0;
+    options.warm_start_sub_steps = pays && options.solver == cg ? static_cast<std::uint32_t>(sub_steps) : 0;
 }
 
 // Whether a limiter takes them.
@@ -69,9 +70,8 @@ public:
     std::optional<Trial> best() {
         try {
             try_settings(given_);
-            for (const int factor : kStepFactors) {
+            for (const int factor : step_factors)
                 if (!search_with_steps(factor * given_.steps_per_frame)) break;
-            }
             refine();
             return confirm();
         } catch (const Interrupted&) {
@@ -99,12 +99,10 @@ private:
     void share_rest_seconds(int steps_per_frame) {
         const auto alike = [&](const Trial& trial) { return trial.settings.steps_per_frame == steps_per_frame; };
         double least = trials_.back().rest_seconds;
-        for (const Trial& trial : trials_) {
+        for (const Trial& trial : trials_)
             if (alike(trial)) least = std::min(least, trial.rest_seconds);
-        }
-        for (Trial& trial : trials_) {
+        for (Trial& trial : trials_)
             if (alike(trial)) trial.rest_seconds = least;
-        }
         if (best_ && alike(*best_)) best_->rest_seconds = least;
     }
 
@@ -130,7 +128,7 @@ private:
         parameters.first_regularization = scheme.first;
         parameters.regularization = scheme.last;
         parameters.stepping = scheme.stepping;
-        if (scheme.stepping == small_steps && scheme.solver == cg) parameters.tolerance = kSmallStepsTolerance;
+        if (scheme.stepping == small_steps && scheme.solver == cg) parameters.tolerance = small_steps_tolerance;
         return settings;
     }
 
@@ -140,9 +138,9 @@ private:
         given.steps_per_frame = steps_per_frame;
         if (!freedom_.regularization) return {given};
         std::vector<LimiterSettings> all;
-        for (const Scheme& scheme : kSchemes) {
+        for (const Scheme& scheme : all_schemes) {
             LimiterSettings settings = with_scheme(given, scheme);
-            set_sub_steps(settings, kSubSteps.front());
+            set_sub_steps(settings, tried_sub_steps.front());
             const bool same_solver = scheme.solver == given.limiting.options.solver;
             if ((freedom_.solver || same_solver) && are_legal(settings)) all.push_back(settings);
         }
@@ -151,18 +149,17 @@ private:
 
     // The fewest sub-steps that meet the target, for each scheme. False where more steps cannot pay.
     bool search_with_steps(int steps_per_frame) {
-        auto place = static_cast<std::ptrdiff_t>(kSubSteps.size() / 2);
+        auto place = static_cast<std::ptrdiff_t>(tried_sub_steps.size() / 2);
         for (LimiterSettings& settings : starts(steps_per_frame)) {
             const auto misses = [&](std::ptrdiff_t at) {
-                set_sub_steps(settings, kSubSteps[static_cast<std::size_t>(at)]);
+                set_sub_steps(settings, tried_sub_steps[static_cast<std::size_t>(at)]);
                 return needs_more(settings);
             };
-            const auto last = static_cast<std::ptrdiff_t>(kSubSteps.size()) - 1;
-            if (misses(place)) {
+            const auto last = static_cast<std::ptrdiff_t>(tried_sub_steps.size()) - 1;
+            if (misses(place))
                 while (place < last && misses(++place)) continue;
-            } else {
+            else
                 while (place > 0 && !misses(place - 1)) --place;
-            }
             // All else of a frame costs more by now than the best in all.
             if (reached() && rest_seconds_ > best_->seconds()) return false;
         }
@@ -193,19 +190,18 @@ private:
     Trial confirm() {
         if (search_frames_ == frames_) return *best_;
         std::vector<Trial> candidates;
-        for (const Trial& trial : trials_) {
+        for (const Trial& trial : trials_)
             if (!trial.cut_short) candidates.push_back(trial);
-        }
         std::stable_sort(candidates.begin(), candidates.end(),
                          [this](const Trial& a, const Trial& b) { return goal_.better(a, b); });
-        candidates.resize(std::min(candidates.size(), kMaxConfirmations));
+        candidates.resize(std::min(candidates.size(), max_confirmations));
         std::optional<Trial> confirmed;
         for (const Trial& candidate : candidates) {
             add_confirmation(candidate.settings, confirmed);
             if (goal_.meets_target(*confirmed) && goal_.within_budget(*confirmed)) return *confirmed;
         }
         // The rest of the scene is harder than its start: more sub-steps, as long as there are more.
-        for (const int sub_steps : kSubSteps) {
+        for (const int sub_steps : tried_sub_steps) {
             if (sub_steps <= candidates.front().settings.limiting.parameters.sub_steps) continue;
             LimiterSettings settings = candidates.front().settings;
             set_sub_steps(settings, sub_steps);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "../../kernels/constants.h"
+
 #include <apsl/parameters.hpp>
 
 #include <algorithm>
@@ -11,15 +13,16 @@ namespace apsl::reference {
 /// where it takes few); α as given where it is 1. The floor lets α = 1 be raised too.
 template <class Real>
 Real raised_regularization(Real alpha, Real factor) {
-    return alpha + (factor - Real(1)) * std::max(alpha - Real(1), Real(0.05));
+    return alpha + (factor - Real(1)) * std::max(alpha - Real(1), static_cast<Real>(APSLK_LEAST_ADAPTED_DAMPING));
 }
 
-/// The factor after a solve that took `iterations`: doubled, halved or kept. Always 1 with adaptive_iterations = 0.
+/// The factor after a solve that took `iterations`: doubled, halved or kept. Always 1 with adaptive_threshold = 0.
 template <class Real>
 Real adapted_factor(Real factor, const Parameters& parameters, int iterations, bool converged) {
-    if (parameters.adaptive_iterations == 0) return Real(1);
-    if (!converged || iterations > parameters.adaptive_iterations) return std::min(Real(2) * factor, Real(1024));
-    return 2 * iterations <= parameters.adaptive_iterations ? std::max(factor / Real(2), Real(1)) : factor;
+    if (parameters.adaptive_threshold == 0) return Real(1);
+    if (!converged || iterations > parameters.adaptive_threshold)
+        return std::min(Real(2) * factor, static_cast<Real>(APSLK_GREATEST_ADAPTIVE_FACTOR));
+    return 2 * iterations <= parameters.adaptive_threshold ? std::max(factor / Real(2), Real(1)) : factor;
 }
 
 }  // namespace apsl::reference

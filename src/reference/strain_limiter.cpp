@@ -68,18 +68,18 @@ template <class Real>
 struct BasicStrainLimiter<Real>::Implementation {
     std::shared_ptr<const Topology> topology;
     Options options;
-    int bound_period = 1;
+    int bound_interval = 1;
     std::vector<std::uint8_t> shared;  // CsrPattern::shared; its offsets and columns live on in G
     SparseMatrix<Real> G;
 
-    std::vector<Real> predicted;  // x̃ + Δt ṽ
-    std::vector<Real> moved;      // x_j, corrected sub-step by sub-step
-    std::vector<Real> motion;     // Δt times the velocity, on a walk with the corrections so far
-    std::vector<Real> total;      // what the corrections so far add to the end of the step
+    std::vector<Real> predicted;         // x̃ + Δt ṽ
+    std::vector<Real> moved;             // x_j, corrected sub-step by sub-step
+    std::vector<Real> motion;            // Δt times the velocity, in small steps with the corrections so far
+    std::vector<Real> total_correction;  // what the corrections so far add to the end of the step
     std::vector<Real> correction;
     std::vector<TriangleGeometry<Real>> geometry;
     EffectiveMasses<Real> masses;
-    TriangleVector<Real> start_error;  // A(x̃) − A⁰, only on a walk
+    TriangleVector<Real> start_error;  // A(x̃) − A⁰, only in small steps
     TriangleVector<Real> area_excess;  // b
     TriangleVector<Real> lambda;
     std::vector<Real> effective_regularization;  // α, [T]
@@ -96,7 +96,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         for (std::size_t n = 0; n < predicted.size(); ++n)
             predicted[n] = buffers.positions[n] + time_step * buffers.velocities[n];
         moved = predicted;
-        total.assign(predicted.size(), Real(0));
+        total_correction.assign(predicted.size(), Real(0));
     }
 
     /// Geometry at x_j. A triangle without a rest area gets no gradients: nothing moves for it.
@@ -109,7 +109,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     }
 
     /// What the areas are off by at the start of the step, and the first of its `parts` parts.
-    AreaChange start_walk(const Buffers<Real>& buffers, Real time_step, int parts) {
+    AreaChange start_small_steps(const Buffers<Real>& buffers, Real time_step, int parts) {
         std::copy(buffers.positions.begin(), buffers.positions.end(), moved.begin());
         const AreaChange at_start = measure(buffers);
         if (!at_start.finite) return at_start;
@@ -130,8 +130,8 @@ struct BasicStrainLimiter<Real>::Implementation {
         return errors;
     }
 
-    /// b at the present geometry, in sub-step stats.sub_steps of a walk of `parts` parts: what is left of the start's
-    /// error stays for now, and no triangle is asked for more growth than a linearised step can give it.
+    /// b at the present geometry, in sub-step stats.sub_steps of small steps of `parts` parts: what is left of the
+    /// start's error stays for now, and no triangle is asked for more growth than a linearised step can give it.
     void find_excess(const Buffers<Real>& buffers, int parts) {
         area_excess = area_errors(buffers);
         if (parts == 0) return;
@@ -151,7 +151,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     SolveResult<Real> solve_by_chebyshev(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         consistent_matrix(*topology, shared, triangles, std::span<const Real>(masses.inverse), G);
-        if (stats.sub_steps % bound_period == 0) bound_vertices(inverse_masses);
+        if (stats.sub_steps % bound_interval == 0) bound_vertices(inverse_masses);
         diagonal_bound(*topology, triangles, std::span<const Real>(masses.inverse),
                        std::span<const Real>(direction_bounds), bound);
         bound *= static_cast<Real>(bound_margin);
@@ -165,7 +165,7 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     /// One solve of (G + (α − 1) diag G) λ = b at the present geometry; λ is left in `lambda`.
     SolveResult<Real> solve(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
-        find_excess(buffers, parameters.walked);
+        find_excess(buffers, parameters.small_steps);
         if (options.solver == Solver::chebyshev) return solve_by_chebyshev(buffers.inverse_masses, parameters);
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         const std::span<const Real> inverse_masses = masses.inverse;
@@ -201,10 +201,10 @@ struct BasicStrainLimiter<Real>::Implementation {
             masses.raise(buffers.inverse_masses);
     }
 
-    /// Corrects x_j. On a walk of `parts` parts a displacement of sub-step k changes the velocity too, by parts · Δx /
-    /// Δt, and carries on through the parts left.
+    /// Corrects x_j. In small steps of `parts` parts a displacement of sub-step k changes the velocity too, by parts ·
+    /// Δx / Δt, and carries on through the parts left.
     void displace(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
-        const int sub_step = stats.sub_steps, parts = parameters.walked;
+        const int sub_step = stats.sub_steps, parts = parameters.small_steps;
         const std::span<const Real> pressures{lambda.data(), geometry.size()};
         displacements<Real>(*topology, geometry, masses.inverse, pressures, correction);
         if (parameters.raises_masses) {
@@ -215,7 +215,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         const auto carried = static_cast<Real>(std::max(parts - sub_step, 1));
         for (std::size_t n = 0; n < moved.size(); ++n) {
             moved[n] += correction[n];
-            total[n] += carried * correction[n];
+            total_correction[n] += carried * correction[n];
         }
         if (sub_step + 1 >= parts) return;
         for (std::size_t n = 0; n < moved.size(); ++n) {
@@ -230,7 +230,8 @@ struct BasicStrainLimiter<Real>::Implementation {
         correction.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) {
             correction[n] = buffers.velocities[n];
-            if (buffers.inverse_masses[n / 3] > Real(0) && total[n] != Real(0)) correction[n] += total[n] / time_step;
+            if (buffers.inverse_masses[n / 3] > Real(0) && total_correction[n] != Real(0))
+                correction[n] += total_correction[n] / time_step;
         }
         return all_finite<Real>(correction);
     }
@@ -253,7 +254,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     bool is_worse(const AreaChange& initial, const AreaChange& change, std::span<const Real> rest_areas) {
         const bool rose =
             change.max > initial.max || change.rms > initial.rms || change.capped_rms > initial.capped_rms;
-        const bool at_rest = initial.max <= 1e-5;  // 32-bit positions tell no better
+        const bool at_rest = initial.max <= static_cast<Real>(APSLK_AT_REST);
         const bool worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
         set_area_change(worse ? initial : change);
         if (rose && !at_rest) stats.status = Status::worsened;
@@ -294,7 +295,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// given.
     void filter(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
         const Real time_step = parameters.time_step;
-        const int parts = parameters.walked;
+        const int parts = parameters.small_steps;
         stats = {};
         stats.status = Status::diverged;
         stats.greatest_mass_ratio = 1.0f;
@@ -310,7 +311,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         bool all_converged = true;
         const auto target = static_cast<double>(parameters.target_area_change);
         masses.start(buffers.inverse_masses);
-        if (parts > 0 && initial.max > target) change = start_walk(buffers, time_step, parts);
+        if (parts > 0 && initial.max > target) change = start_small_steps(buffers, time_step, parts);
         for (;;) {
             if (!change.finite) return name_triangle(buffers);
             if (stats.sub_steps == parameters.sub_steps) break;
@@ -323,8 +324,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             displace(buffers.inverse_masses, parameters);
             prepare_next(buffers, parameters);
             ++stats.sub_steps;
-            stats.cg_iterations +=
-                result.iterations + (kept.empty() ? 0 : 1);  // the product with a guess costs as much
+            stats.iterations += result.iterations + (kept.empty() ? 0 : 1);  // the product with a guess costs as much
             stats.residual = std::max(stats.residual, static_cast<float>(result.relative_residual));
             all_converged = all_converged && result.converged;
             adaptive_factor = adapted_factor(adaptive_factor, parameters, result.iterations, result.converged);
@@ -347,10 +347,10 @@ BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> top
     validate(options);
     CsrPattern pattern = topology->csr_pattern(options.matrix);
     implementation_->options = options;
-    implementation_->bound_period = static_cast<int>(std::min(options.bound_period, 1u << 30));
+    implementation_->bound_interval = static_cast<int>(std::min(options.bound_interval, 1u << 30));
     implementation_->topology = std::move(topology);
     implementation_->kept.assign(
-        options.kept_pressures,
+        options.warm_start_sub_steps,
         TriangleVector<Real>::Zero(static_cast<Eigen::Index>(implementation_->topology->triangle_count())));
     implementation_->G = zero_matrix<Real>(pattern);
     implementation_->shared = std::move(pattern.shared);
@@ -369,7 +369,7 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
     const auto entries = static_cast<std::size_t>(i.G.nonZeros());
     const auto rows = static_cast<std::size_t>(i.G.rows());
     return entries * (sizeof(Real) + sizeof(int)) + (rows + 1) * sizeof(int) + bytes(i.shared) + bytes(i.predicted) +
-           bytes(i.moved) + bytes(i.motion) + bytes(i.total) + bytes(i.correction) + bytes(i.geometry) +
+           bytes(i.moved) + bytes(i.motion) + bytes(i.total_correction) + bytes(i.correction) + bytes(i.geometry) +
            bytes(i.area_excess) + bytes(i.start_error) + bytes(i.masses.inverse) + bytes(i.masses.tension) +
            bytes(i.masses.stiffness) + bytes(i.lambda) + bytes(i.effective_regularization) +
            i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) + bytes(i.scratch.inverse_diagonal) +

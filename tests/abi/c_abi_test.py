@@ -49,14 +49,14 @@ class PlantedChanges(unittest.TestCase):
     def test_reordered_fields_of_one_type(self):
         report = self.planted(r"float max_area_change;(.*?)float rms_area_change;",
                               r"float rms_area_change;\1float max_area_change;")
-        self.assertIn("apsl_limiter_stats", report)
+        self.assertIn("apsl_stats", report)
 
     def test_reordered_fields_of_two_types(self):
         report = self.planted(r"cl_mem buffer;(.*?)size_t offset;", r"size_t offset;\1cl_mem buffer;")
         self.assertIn("apsl_buffer_view", report)
 
     def test_wider_field(self):
-        self.assertIn("apsl_limiter_options", self.planted("uint32_t work_group_size", "uint64_t work_group_size"))
+        self.assertIn("apsl_options", self.planted("uint32_t work_group_size", "uint64_t work_group_size"))
 
     def test_changed_parameter(self):
         self.assertIn("apsl_topology_create", self.planted("size_t vertex_count", "uint32_t vertex_count"))

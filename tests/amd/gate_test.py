@@ -165,19 +165,19 @@ class Variants(unittest.TestCase):
     def test_a_file_is_compiled_with_the_defines_it_reads_through_its_includes(self):
         with tempfile.TemporaryDirectory() as folder:
             kernels = Path(folder)
-            (kernels / "a.h").write_text("#ifndef APSL_A_H\n#define APSL_A_H\n#if APSL_WORK_GROUP_SIZE > 64\n#endif\n"
-                                         "#ifndef APSL_MATRIX\n#define APSL_MATRIX 0\n#endif\n#endif\n")
+            (kernels / "a.h").write_text("#ifndef APSL_A_H\n#define APSL_A_H\n#if APSLK_WORK_GROUP_SIZE > 64\n#endif\n"
+                                         "#ifndef APSLK_MATRIX\n#define APSLK_MATRIX 0\n#endif\n#endif\n")
             (kernels / "free.cl").write_text('#include "a.h"\n')
-            (kernels / "fixed.cl").write_text('#define APSL_MATRIX 1\n#include "a.h"\n')
-            self.assertEqual(variants.defines_read_by(kernels / "free.cl"), ["APSL_MATRIX", "APSL_WORK_GROUP_SIZE"])
-            self.assertEqual(variants.defines_read_by(kernels / "fixed.cl"), ["APSL_WORK_GROUP_SIZE"])
+            (kernels / "fixed.cl").write_text('#define APSLK_MATRIX 1\n#include "a.h"\n')
+            self.assertEqual(variants.defines_read_by(kernels / "free.cl"), ["APSLK_MATRIX", "APSLK_WORK_GROUP_SIZE"])
+            self.assertEqual(variants.defines_read_by(kernels / "fixed.cl"), ["APSLK_WORK_GROUP_SIZE"])
             self.assertEqual([(v.source.name, v.defines) for v in variants.variants(kernels)], [
-                ("fixed.cl", (("APSL_WORK_GROUP_SIZE", 64),)),
-                ("fixed.cl", (("APSL_WORK_GROUP_SIZE", 256),)),
-                ("free.cl", (("APSL_MATRIX", 0), ("APSL_WORK_GROUP_SIZE", 64))),
-                ("free.cl", (("APSL_MATRIX", 1), ("APSL_WORK_GROUP_SIZE", 64))),
-                ("free.cl", (("APSL_MATRIX", 0), ("APSL_WORK_GROUP_SIZE", 256))),
-                ("free.cl", (("APSL_MATRIX", 1), ("APSL_WORK_GROUP_SIZE", 256)))])
+                ("fixed.cl", (("APSLK_WORK_GROUP_SIZE", 64),)),
+                ("fixed.cl", (("APSLK_WORK_GROUP_SIZE", 256),)),
+                ("free.cl", (("APSLK_MATRIX", 0), ("APSLK_WORK_GROUP_SIZE", 64))),
+                ("free.cl", (("APSLK_MATRIX", 1), ("APSLK_WORK_GROUP_SIZE", 64))),
+                ("free.cl", (("APSLK_MATRIX", 0), ("APSLK_WORK_GROUP_SIZE", 256))),
+                ("free.cl", (("APSLK_MATRIX", 1), ("APSLK_WORK_GROUP_SIZE", 256)))])
 
 
 if __name__ == "__main__":

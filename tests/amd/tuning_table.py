@@ -4,15 +4,15 @@ import re
 
 BEGIN = "<!-- begin: tests/amd/check_kernels.py --write-table -->"
 END = "<!-- end -->"
-WORK_GROUP_SIZE = "APSL_WORK_GROUP_SIZE=256"
+WORK_GROUP_SIZE = "APSLK_WORK_GROUP_SIZE=256"
 
 
 def _label(key, names):
-    """`cg_update.cl:cg_update APSL_WORK_GROUP_SIZE=256` to `cg_update`, with the defines that make the variant and,
+    """`cg_update.cl:cg_update APSLK_WORK_GROUP_SIZE=256` to `cg_update`, with the defines that make the variant and,
     where several of `names` (source:kernel) end alike, the file."""
     name, *defines = key.split(" ")
     source, kernel = name.split(":")
-    others = [d.removeprefix("APSL_").lower() for d in defines if d != WORK_GROUP_SIZE]
+    others = [d.removeprefix("APSLK_").lower() for d in defines if d != WORK_GROUP_SIZE]
     if sum(other.endswith(f":{kernel}") for other in names) > 1:
         others.insert(0, source)
     return kernel + (", " + ", ".join(others) if others else "")
@@ -25,7 +25,7 @@ def table(compiler, results, targets):
              "|---|---" + "|---" * len(targets) + "|"]
     names = {key.split(" ")[0] for key in results}
     for key in sorted(results):
-        if "APSL_WORK_GROUP_SIZE=" in key and WORK_GROUP_SIZE not in key.split(" "):
+        if "APSLK_WORK_GROUP_SIZE=" in key and WORK_GROUP_SIZE not in key.split(" "):
             continue
         usages = [results[key][str(t)] for t in targets]
         cells = [f"{u.vgprs} / {u.sgprs} / {u.waves_per_simd}" for u in usages]

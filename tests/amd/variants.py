@@ -12,30 +12,30 @@ from pathlib import Path
 # The defines that host/ may pass. A file is compiled with every combination of one setting from each axis; defines that
 # stand in one setting vary together. 256 is AMD's default limit of a work-group.
 AXES = [
-    [{"APSL_WORK_GROUP_SIZE": 64}, {"APSL_WORK_GROUP_SIZE": 256}],
-    [{"APSL_MATRIX": 0}, {"APSL_MATRIX": 1}],
+    [{"APSLK_WORK_GROUP_SIZE": 64}, {"APSLK_WORK_GROUP_SIZE": 256}],
+    [{"APSLK_MATRIX": 0}, {"APSLK_MATRIX": 1}],
     # xyz, xyzw with the inverse mass in the positions' w, a structure of arrays, xyzw positions alone.
-    [{"APSL_POSITION_STRIDE": stride, "APSL_VELOCITY_STRIDE": stride, "APSL_POSITION_COMPONENT_STRIDE": component,
-      "APSL_VELOCITY_COMPONENT_STRIDE": component, "APSL_INVERSE_MASS_STRIDE": mass, "APSL_POSITIONS_ONLY": positions}
+    [{"APSLK_POSITION_STRIDE": stride, "APSLK_VELOCITY_STRIDE": stride, "APSLK_POSITION_COMPONENT_STRIDE": component,
+      "APSLK_VELOCITY_COMPONENT_STRIDE": component, "APSLK_INVERSE_MASS_STRIDE": mass, "APSLK_POSITIONS_ONLY": positions}
      for stride, component, mass, positions in [(3, 1, 1, 0), (4, 1, 4, 0), (1, 65536, 1, 0), (4, 1, 4, 1)]],
     # A Chebyshev solve takes one α for all.
-    [{"APSL_REGULARIZATION_PER_TRIANGLE": alpha, "APSL_CHEBYSHEV": chebyshev}
+    [{"APSLK_REGULARIZATION_PER_TRIANGLE": alpha, "APSLK_CHEBYSHEV": chebyshev}
      for alpha, chebyshev in [(0, 0), (1, 0), (0, 1)]],
-    [{"APSL_KEPT_PRESSURES": 0}, {"APSL_KEPT_PRESSURES": 8}],
+    [{"APSLK_WARM_START_SUB_STEPS": 0}, {"APSLK_WARM_START_SUB_STEPS": 8}],
     # What the patches of 512 triangles of most meshes have; host/ passes the number of the meshes at hand.
-    [{"APSL_PATCH_VERTICES": 400}],
+    [{"APSLK_PATCH_VERTICES": 400}],
 ]
 
 # Combinations that host/ never builds for a GPU (host/limiter_options.cpp), or that make no other code.
-NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSL_KEPT_PRESSURES": 8}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1},
-                                           {"APSL_CHEBYSHEV": 1}),
-                "gather_displacements.cl": ({"APSL_KEPT_PRESSURES": 8, "APSL_CHEBYSHEV": 1},
-                                            {"APSL_POSITION_STRIDE": 1, "APSL_CHEBYSHEV": 1},
-                                            {"APSL_POSITION_STRIDE": 4, "APSL_CHEBYSHEV": 1}),
-                "order_triangle_values.cl": ({"APSL_CHEBYSHEV": 1}, {"APSL_POSITIONS_ONLY": 1}),
-                "measure_area_change.cl": ({"APSL_CHEBYSHEV": 1}, {"APSL_REGULARIZATION_PER_TRIANGLE": 1},
-                                           {"APSL_POSITIONS_ONLY": 1}),
-                "assemble_gradients.cl": ({"APSL_CHEBYSHEV": 1, "APSL_POSITIONS_ONLY": 1},)}
+NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"APSLK_REGULARIZATION_PER_TRIANGLE": 1},
+                                           {"APSLK_CHEBYSHEV": 1}),
+                "gather_displacements.cl": ({"APSLK_WARM_START_SUB_STEPS": 8, "APSLK_CHEBYSHEV": 1},
+                                            {"APSLK_POSITION_STRIDE": 1, "APSLK_CHEBYSHEV": 1},
+                                            {"APSLK_POSITION_STRIDE": 4, "APSLK_CHEBYSHEV": 1}),
+                "order_triangle_values.cl": ({"APSLK_CHEBYSHEV": 1}, {"APSLK_POSITIONS_ONLY": 1}),
+                "measure_area_change.cl": ({"APSLK_CHEBYSHEV": 1}, {"APSLK_REGULARIZATION_PER_TRIANGLE": 1},
+                                           {"APSLK_POSITIONS_ONLY": 1}),
+                "assemble_gradients.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_POSITIONS_ONLY": 1},)}
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ _DEFAULT = re.compile(r"^\s*#\s*ifndef\s+(\w+)\n\s*#\s*define\s+\1[ \t]+\S.*\n\s
 _DEFINITION = re.compile(r"^\s*#\s*define\s+(\w+)", re.MULTILINE)
 _CONDITION = re.compile(r"^\s*#\s*(?:el)?if(?:n?def)?\b(.*)$", re.MULTILINE)
 _COMMENT = re.compile(r"//.*")
-_KERNEL = re.compile(r"^(?:APSL_KERNEL|__kernel|kernel)\b[^;{]*?\bvoid\s+(\w+)\s*\(", re.MULTILINE)
+_KERNEL = re.compile(r"^(?:APSLK_KERNEL|__kernel|kernel)\b[^;{]*?\bvoid\s+(\w+)\s*\(", re.MULTILINE)
 
 
 def _text_with_includes(path, seen):

@@ -22,7 +22,7 @@ TEST_CASE("kernels compile without a warning, which a driver may print to the us
                     options.work_group_size = work_group_size;
                     options.positions_only = positions_only;
                     options.regularization_per_triangle = more;
-                    options.kept_pressures = more ? 2 : 0;
+                    options.warm_start_sub_steps = more ? 2 : 0;
                     CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply),
                             static_cast<int>(options.execution), by_chebyshev, work_group_size, positions_only, more);
                     const OpenClCalls before = opencl_calls();

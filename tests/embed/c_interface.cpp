@@ -13,7 +13,7 @@ using namespace apsl::test;
 
 namespace {
 
-apsl_limiter_buffers c_views(const CallerBuffers& buffers) {
+apsl_buffers c_views(const CallerBuffers& buffers) {
     const Buffers v = buffers.views();
     return {{v.positions.buffer, v.positions.offset},
             {v.velocities.buffer, v.velocities.offset},
@@ -45,8 +45,8 @@ TEST_CASE("the C interface does what the C++ one does, byte for byte, in every e
         const std::vector<Stats> expected_stats = filter(limiter, expected, {&parameters, 1});
 
         const Owned<cl_command_queue> queue = in_order_queue();
-        const apsl_limiter_buffers views = c_views(buffers);
-        apsl_limiter_stats stats{};
+        const apsl_buffers views = c_views(buffers);
+        apsl_stats stats{};
         std::size_t scratch_bytes = 0;
         REQUIRE(filter_in_c(device().context, device().id, queue.get(), cloth.topology->triangles().data()->data(),
                             cloth.topology->triangle_count(), cloth.topology->vertex_count(), execution, &views, &stats,
@@ -85,13 +85,13 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     const CTopology good(cloth);
     const apsl_topology* const cloths[] = {good.topology, nullptr};
     apsl_limiter* limiter = reinterpret_cast<apsl_limiter*>(&elsewhere_entirely);
-    apsl_limiter_options options = apsl_limiter_default_options();
+    apsl_options options = apsl_default_options();
     options.position_stride = 1;
     CHECK(apsl_limiter_create(device().context, device().id, cloths, 1, &options, &limiter) ==
           APSL_ERROR_INVALID_ARGUMENT);
     CHECK(limiter == nullptr);
     last_error_says("position_stride is 1");
-    options = apsl_limiter_default_options();
+    options = apsl_default_options();
     options.execution = 3;
     CHECK(apsl_limiter_create(device().context, device().id, cloths, 1, &options, &limiter) ==
           APSL_ERROR_INVALID_ARGUMENT);
@@ -110,15 +110,15 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     CHECK(apsl_limiter_scratch_bytes(nullptr) == 0);
     REQUIRE(apsl_limiter_create(device().context, device().id, cloths, 1, nullptr, &limiter) == APSL_SUCCESS);
 
-    const apsl_limiter_buffers views = c_views(buffers);
-    apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+    const apsl_buffers views = c_views(buffers);
+    apsl_parameters parameters = apsl_default_parameters();
     parameters.regularization = 0.5f;
     cl_event event = nullptr;
     CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 0, nullptr, &event) ==
           APSL_ERROR_INVALID_ARGUMENT);
     CHECK(event == nullptr);
     last_error_says("regularization is 0.5");
-    parameters = apsl_limiter_default_parameters();
+    parameters = apsl_default_parameters();
     CHECK(apsl_limiter_enqueue(limiter, queue.get(), nullptr, &parameters, 1, 0, nullptr, &event) ==
           APSL_ERROR_INVALID_ARGUMENT);
     CHECK(apsl_limiter_enqueue(nullptr, queue.get(), &views, &parameters, 1, 0, nullptr, &event) ==
@@ -133,7 +133,7 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
               APSL_ERROR_INVALID_ARGUMENT);
         last_error_says("parameters given for 1 cloths, expected one for each or a single one");
     }
-    apsl_limiter_stats stats{};
+    apsl_stats stats{};
     CHECK(apsl_limiter_read_stats(limiter, queue.get(), &stats, 1, 0, nullptr, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
     last_error_says("event is null");
 
@@ -155,10 +155,9 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
 namespace {
 
 /// One call of the C interface on an in-order queue, waited for.
-apsl_limiter_stats filter_in_c(apsl_limiter* limiter, const apsl_limiter_buffers& views,
-                               const apsl_limiter_parameters& parameters) {
+apsl_stats filter_in_c(apsl_limiter* limiter, const apsl_buffers& views, const apsl_parameters& parameters) {
     const Owned<cl_command_queue> queue = in_order_queue();
-    apsl_limiter_stats stats{};
+    apsl_stats stats{};
     cl_event read = nullptr;
     REQUIRE(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 0, nullptr, nullptr) == APSL_SUCCESS);
     REQUIRE(apsl_limiter_read_stats(limiter, queue.get(), &stats, 1, 0, nullptr, &read) == APSL_SUCCESS);
@@ -199,21 +198,21 @@ TEST_CASE("the C interface: rest areas from positions, a cloth off, scratch memo
 
     // Off: nothing moves.
     const CallerBuffers buffers({&cloth, 1}, {}), expected({&cloth, 1}, {});
-    apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+    apsl_parameters parameters = apsl_default_parameters();
     CHECK(parameters.enabled == 1);
     parameters.enabled = 0;
-    CHECK(filter_in_c(limiter, c_views(buffers), parameters).status == APSL_LIMITER_OFF);
+    CHECK(filter_in_c(limiter, c_views(buffers), parameters).status == APSL_STATUS_OFF);
     CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
     parameters.enabled = 1;
     StrainLimiter same(device().context, device().id, cloth.topology);
     const std::vector<Stats> expected_stats = filter(same, expected, {&defaults, 1});
-    const apsl_limiter_stats stats = filter_in_c(limiter, c_views(buffers), parameters);
+    const apsl_stats stats = filter_in_c(limiter, c_views(buffers), parameters);
     CHECK(std::memcmp(&stats, expected_stats.data(), sizeof stats) == 0);
     CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
 
     // At rest where it lies: x̃ as rest positions, and no velocities.
     const Owned<cl_command_queue> queue = in_order_queue();
-    apsl_limiter_buffers views = c_views(buffers);
+    apsl_buffers views = c_views(buffers);
     MovingCloth still = cloth;
     still.velocities.assign(still.velocities.size(), 0.0);
     const CallerBuffers at_rest({&still, 1}, {});
@@ -233,14 +232,14 @@ TEST_CASE("the C interface: rest areas from positions, a cloth off, scratch memo
     const CallerBuffers other_buffers({&other, 1}, {}), other_expected({&other, 1}, {});
     StrainLimiter fresh(device().context, device().id, other.topology);
     filter(fresh, other_expected, {&defaults, 1});
-    CHECK(filter_in_c(limiter, c_views(other_buffers), apsl_limiter_default_parameters()).status == APSL_LIMITER_OK);
+    CHECK(filter_in_c(limiter, c_views(other_buffers), apsl_default_parameters()).status == APSL_STATUS_OK);
     CHECK(same_bytes(other_buffers.read_velocities(), other_expected.read_velocities()));
     CHECK(apsl_limiter_scratch_bytes(limiter) == fresh.scratch_bytes());
     apsl_limiter_destroy(limiter);
 }
 
 TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
-    const apsl_limiter_options o = apsl_limiter_default_options();
+    const apsl_options o = apsl_default_options();
     const Options options;
     CHECK(o.matrix == static_cast<int>(options.matrix));
     CHECK(o.apply == static_cast<int>(options.apply));
@@ -253,10 +252,10 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.inverse_mass_stride == options.inverse_mass_stride);
     CHECK(o.positions_only == 0);
     CHECK(o.regularization_per_triangle == 0);
-    CHECK(o.kept_pressures == options.kept_pressures);
+    CHECK(o.warm_start_sub_steps == options.warm_start_sub_steps);
     CHECK(o.solver == static_cast<int>(options.solver));
-    CHECK(o.bound_period == options.bound_period);
-    const apsl_limiter_parameters p = apsl_limiter_default_parameters();
+    CHECK(o.bound_interval == options.bound_interval);
+    const apsl_parameters p = apsl_default_parameters();
     const Parameters parameters;
     CHECK(p.time_step == parameters.time_step);
     CHECK(p.regularization == parameters.regularization);
@@ -264,7 +263,7 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(p.target_area_change == parameters.target_area_change);
     CHECK(p.tolerance == parameters.tolerance);
     CHECK(p.max_iterations == parameters.max_iterations);
-    CHECK(p.adaptive_iterations == parameters.adaptive_iterations);
+    CHECK(p.adaptive_threshold == parameters.adaptive_threshold);
     CHECK(p.first_regularization == parameters.first_regularization);
     CHECK(p.stepping == static_cast<int>(parameters.stepping));
     CHECK(p.enabled == 1);
@@ -275,7 +274,7 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
 TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {
     const MovingCloth cloth = moving_cloth(grid(3, 3, 1.0, 1.0, Diagonals::alternating), 1);
     const CTopology topology(cloth);
-    apsl_limiter_options options = apsl_limiter_default_options();
+    apsl_options options = apsl_default_options();
     options.reserved[5] = 5;
     apsl_limiter* limiter = nullptr;
     CHECK(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &options, &limiter) ==
@@ -286,9 +285,9 @@ TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {
     REQUIRE(apsl_limiter_create(device().context, device().id, &topology.topology, 1, nullptr, &limiter) ==
             APSL_SUCCESS);
     const CallerBuffers buffers({&cloth, 1}, {});
-    const apsl_limiter_buffers views = c_views(buffers);
+    const apsl_buffers views = c_views(buffers);
     const Owned<cl_command_queue> queue = in_order_queue();
-    apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+    apsl_parameters parameters = apsl_default_parameters();
     parameters.reserved[0] = 1;
     CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 0, nullptr, nullptr) ==
           APSL_ERROR_INVALID_ARGUMENT);

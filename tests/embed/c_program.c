@@ -3,13 +3,13 @@
 
 apsl_result filter_in_c(cl_context context, cl_device_id device, cl_command_queue queue, const uint32_t* triangles,
                         size_t triangle_count, size_t vertex_count, apsl_execution execution,
-                        const apsl_limiter_buffers* buffers, apsl_limiter_stats* stats, size_t* scratch_bytes) {
+                        const apsl_buffers* buffers, apsl_stats* stats, size_t* scratch_bytes) {
     apsl_topology* topology = NULL;
     apsl_limiter* limiter = NULL;
     cl_event limited = NULL;
     cl_event read = NULL;
-    apsl_limiter_options options = apsl_limiter_default_options();
-    const apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+    apsl_options options = apsl_default_options();
+    const apsl_parameters parameters = apsl_default_parameters();
     options.execution = (int32_t)execution;
 
     apsl_result result = apsl_topology_create(triangles, triangle_count, vertex_count, &topology);

@@ -13,7 +13,7 @@ extern "C" {
  * either way. */
 apsl_result filter_in_c(cl_context context, cl_device_id device, cl_command_queue queue, const uint32_t* triangles,
                         size_t triangle_count, size_t vertex_count, apsl_execution execution,
-                        const apsl_limiter_buffers* buffers, apsl_limiter_stats* stats, size_t* scratch_bytes);
+                        const apsl_buffers* buffers, apsl_stats* stats, size_t* scratch_bytes);
 
 #ifdef __cplusplus
 }

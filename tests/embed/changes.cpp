@@ -20,7 +20,7 @@ MovingCloth a_cloth(std::uint32_t seed = 1) {
 }
 
 constexpr Parameters few{.regularization = 2.0f, .sub_steps = 3};
-/// 30 of them, walking. α is what the printed matrix needs.
+/// 30 of them, in small steps. α is what the printed matrix needs.
 constexpr Parameters small_steps{.regularization = 2.0f};
 
 struct Outcome {
@@ -101,7 +101,7 @@ TEST_CASE("a cloth switched off is left alone, and the others never know", "[emb
                                                                   cloths[2].topology};
     for (Options options : variants)
         for (const auto& [kept, given] : {std::pair{0u, few}, {2u, few}, {0u, small_steps}}) {
-            options.kept_pressures = kept;
+            options.warm_start_sub_steps = kept;
             std::vector<Parameters> parameters(3, given);
             parameters[1].enabled = false;
             CAPTURE(static_cast<int>(options.apply), static_cast<int>(options.execution), kept, given.sub_steps);

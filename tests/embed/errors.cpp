@@ -39,17 +39,17 @@ TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]"
                   options({.matrix = Matrix::printed, .execution = Execution::one_group}));
     check_invalid("execution is one_group, which needs the consistent matrix, matrix-free",
                   options({.apply = Apply::assembled_csr, .execution = Execution::one_group}));
-    check_invalid("kept_pressures is 4294967295, expected a whole number >= 0 and <= 65536",
-                  options({.kept_pressures = UINT32_MAX}));
-    check_invalid("bound_period is 0, expected a whole number >= 1", options({.bound_period = 0}));
+    check_invalid("warm_start_sub_steps is 4294967295, expected a whole number >= 0 and <= 65536",
+                  options({.warm_start_sub_steps = UINT32_MAX}));
+    check_invalid("bound_interval is 0, expected a whole number >= 1", options({.bound_interval = 0}));
     check_invalid("solver is 2, expected conjugate_gradient (0) or chebyshev (1)",
                   options({.solver = static_cast<Solver>(2)}));
     check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",
                   options({.matrix = Matrix::printed, .solver = Solver::chebyshev}));
     check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",
                   options({.apply = Apply::assembled_csr, .solver = Solver::chebyshev}));
-    check_invalid("solver is chebyshev, which takes no kept_pressures",
-                  options({.kept_pressures = 1, .solver = Solver::chebyshev}));
+    check_invalid("solver is chebyshev, which takes no warm_start_sub_steps",
+                  options({.warm_start_sub_steps = 1, .solver = Solver::chebyshev}));
     check_invalid("solver is chebyshev, which needs one regularization for all triangles",
                   options({.regularization_per_triangle = true, .solver = Solver::chebyshev}));
     check_invalid("execution is one_group, which needs solver conjugate_gradient",
@@ -77,7 +77,7 @@ TEST_CASE("enqueue refuses parameters out of range, and queues nothing", "[embed
     check_invalid("time_step is 0", parameters({.time_step = 0.0f}));
     check_invalid("time_step is nan", parameters({.time_step = nan}));
     check_invalid("time_step is inf", parameters({.time_step = infinity}));
-    check_invalid("adaptive_iterations is -1", parameters({.adaptive_iterations = -1}));
+    check_invalid("adaptive_threshold is -1", parameters({.adaptive_threshold = -1}));
     check_invalid("first_regularization is 1, expected 0", parameters({.first_regularization = 1.0f}));
     check_invalid("sub_steps is -1", parameters({.sub_steps = -1}));
     check_invalid("target_area_change is -0.1", parameters({.target_area_change = -0.1f}));
@@ -118,9 +118,9 @@ TEST_CASE("enqueue refuses buffers it cannot use, names them, and queues nothing
     }
     StrainLimiter by_chebyshev = limiter({.solver = Solver::chebyshev});
     CHECK(by_chebyshev.options().execution == Execution::many_groups);
-    check_invalid("adaptive_iterations is 4, expected 0: Options::solver is chebyshev", [&] {
+    check_invalid("adaptive_threshold is 4, expected 0: Options::solver is chebyshev", [&] {
         clReleaseEvent(by_chebyshev.enqueue(queue.get(), CallerBuffers({&cloth(), 1}, {}).views(),
-                                            Parameters{.adaptive_iterations = 4}));
+                                            Parameters{.adaptive_threshold = 4}));
     });
     StrainLimiter positions_alone = limiter({.positions_only = true});
     check_invalid("buffers.velocities is given, but Options::positions_only is on", [&] {

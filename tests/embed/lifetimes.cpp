@@ -69,7 +69,7 @@ void refuse_in_c(const MovingCloth& cloth) {
     const CTopology made(cloth);
     const apsl_topology* const cloths[] = {made.topology};
     apsl_limiter* limiter = nullptr;
-    apsl_limiter_options options = apsl_limiter_default_options();
+    apsl_options options = apsl_default_options();
     options.position_stride = 1;
     REQUIRE(apsl_limiter_create(device().context, device().id, cloths, 1, &options, &limiter) ==
             APSL_ERROR_INVALID_ARGUMENT);
@@ -82,13 +82,13 @@ void refuse_in_c(const MovingCloth& cloth) {
 
 void make_and_use_in_c(const MovingCloth& cloth, const CallerBuffers& buffers) {
     const Buffers v = buffers.views();
-    const apsl_limiter_buffers views{{v.positions.buffer, v.positions.offset},
-                                     {v.velocities.buffer, v.velocities.offset},
-                                     {v.inverse_masses.buffer, v.inverse_masses.offset},
-                                     {v.rest_areas.buffer, v.rest_areas.offset},
-                                     {nullptr, 0}};
+    const apsl_buffers views{{v.positions.buffer, v.positions.offset},
+                             {v.velocities.buffer, v.velocities.offset},
+                             {v.inverse_masses.buffer, v.inverse_masses.offset},
+                             {v.rest_areas.buffer, v.rest_areas.offset},
+                             {nullptr, 0}};
     const Owned<cl_command_queue> queue = in_order_queue();
-    apsl_limiter_stats stats{};
+    apsl_stats stats{};
     std::size_t scratch_bytes = 0;
     REQUIRE(filter_in_c(device().context, device().id, queue.get(), cloth.topology->triangles().data()->data(),
                         cloth.topology->triangle_count(), cloth.topology->vertex_count(), APSL_EXECUTION_AUTOMATIC,

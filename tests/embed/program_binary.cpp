@@ -206,7 +206,7 @@ TEST_CASE("program binary: the second start is quick", "[embed]") {
 
 TEST_CASE("program binary: the C interface gives and takes it", "[embed]") {
     const Options options{.execution = Execution::one_group};
-    apsl_limiter_options c_options = apsl_limiter_default_options();
+    apsl_options c_options = apsl_default_options();
     c_options.execution = APSL_EXECUTION_ONE_GROUP;
     apsl_topology* topology = nullptr;
     REQUIRE(apsl_topology_create(cloth().topology->triangles().data()->data(), cloth().topology->triangle_count(),

@@ -96,7 +96,7 @@ TEST_CASE("the filter agrees with the reference at the default parameters", "[fi
         const Filtered want = filter_with_reference(cloth, options, parameters);
         CHECK(got.stats.status == Status::ok);
         CHECK(got.stats.sub_steps == 30);
-        CHECK(std::abs(got.stats.cg_iterations - want.stats.cg_iterations) <= 30);
+        CHECK(std::abs(got.stats.iterations - want.stats.iterations) <= 30);
         CHECK(std::abs(got.stats.max_area_change - want.stats.max_area_change) <= 0.002f);
         CHECK(std::abs(got.stats.rms_area_change - want.stats.rms_area_change) <= 0.0005f);
     }
@@ -138,14 +138,14 @@ TEST_CASE("iterations past the queued ones: as many as the reference's", "[filte
     Options many_groups = test::many_groups, one_group = test::one_group;
     many_groups.regularization_per_triangle = one_group.regularization_per_triangle = true;
     const Filtered want = filter_with_reference(cloth, many_groups, slow);
-    REQUIRE(want.stats.cg_iterations > queued + 2);
-    REQUIRE(want.stats.cg_iterations < 50);
+    REQUIRE(want.stats.iterations > queued + 2);
+    REQUIRE(want.stats.iterations < 50);
     for (Options options : {many_groups, one_group})
         for (const std::uint32_t work_group_size : {1u, 64u}) {
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
             const Filtered got = filter_on_device(cloth, options, slow);
-            CHECK(std::abs(got.stats.cg_iterations - want.stats.cg_iterations) <= 1);
+            CHECK(std::abs(got.stats.iterations - want.stats.iterations) <= 1);
             CHECK(got.stats.status == want.stats.status);
             CHECK(got.stats.residual <= slow.tolerance);
             std::vector<double> correction(want.velocities.size());
@@ -160,7 +160,7 @@ TEST_CASE("iterations past the queued ones: as many as the reference's", "[filte
     cloth.regularization.assign(cloth.topology->triangle_count(), 1.0);
     for (const Options& options : {many_groups, one_group}) {
         const Filtered got = filter_on_device(cloth, options, hopeless);
-        CHECK(got.stats.cg_iterations == 50);
+        CHECK(got.stats.iterations == 50);
         CHECK(got.stats.residual > hopeless.tolerance);
     }
 }
@@ -168,9 +168,9 @@ TEST_CASE("iterations past the queued ones: as many as the reference's", "[filte
 TEST_CASE("adaptive alpha: raised, restored and kept between calls as the reference does it", "[filter]") {
     const MovingCloth cloth = moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 2);
     const Parameters tight_budget{
-        .regularization = 1.01f, .sub_steps = 4, .tolerance = 1e-2f, .max_iterations = 6, .adaptive_iterations = 5};
+        .regularization = 1.01f, .sub_steps = 4, .tolerance = 1e-2f, .max_iterations = 6, .adaptive_threshold = 5};
     const Parameters roomy{
-        .regularization = 1.3f, .sub_steps = 2, .tolerance = 0.1f, .max_iterations = 50, .adaptive_iterations = 40};
+        .regularization = 1.3f, .sub_steps = 2, .tolerance = 0.1f, .max_iterations = 50, .adaptive_threshold = 40};
     for (Options options : variants) {
         if (options.matrix == Matrix::printed) continue;  // amplifies what differs, see docs/formulation.md
         for (const std::uint32_t work_group_size : {1u, 64u}) {
@@ -186,7 +186,7 @@ TEST_CASE("adaptive alpha: raised, restored and kept between calls as the refere
                 expected.enqueue({cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, {}}, parameters);
                 const Stats want = expected.read_stats();
                 CHECK(got.status == want.status);
-                CHECK(std::abs(got.cg_iterations - want.cg_iterations) <= want.sub_steps);
+                CHECK(std::abs(got.iterations - want.iterations) <= want.sub_steps);
                 unconverged += want.status == Status::not_converged;
                 std::vector<double> correction(velocities);
                 for (std::size_t n = 0; n < correction.size(); ++n) correction[n] -= cloth.velocities[n];
@@ -201,7 +201,7 @@ TEST_CASE("adaptive alpha: raised, restored and kept between calls as the refere
             const Parameters plain{.sub_steps = 2};
             const CallerBuffers after({&cloth, 1}, options), fresh({&cloth, 1}, options);
             Parameters adapting = plain;
-            adapting.adaptive_iterations = 1;
+            adapting.adaptive_threshold = 1;
             filter(limiter, CallerBuffers({&cloth, 1}, options), {&adapting, 1});
             filter(limiter, CallerBuffers({&cloth, 1}, options), {&plain, 1});  // the factor is left behind here
             filter(limiter, after, {&plain, 1});
@@ -233,11 +233,10 @@ TEST_CASE("alpha that changes over the sub-steps: as the reference does it", "[f
     }
 }
 
-TEST_CASE("kept pressures: the guess a call starts from is the reference's, and a broken call leaves no harm",
-          "[filter]") {
+TEST_CASE("warm start: the guess a call starts from is the reference's, and a broken call leaves no harm", "[filter]") {
     MovingCloth cloth = moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 2);
     const double first_coordinate = cloth.positions[40];
-    // More sub-steps than kept pressures: the last two share a place.
+    // More sub-steps than warm start: the last two share a place.
     const Parameters parameters{.regularization = 1.3f,
                                 .sub_steps = 3,
                                 .tolerance = 1e-3f,
@@ -245,7 +244,7 @@ TEST_CASE("kept pressures: the guess a call starts from is the reference's, and 
                                 .first_regularization = 1.05f};
     for (Options options : variants) {
         if (options.matrix == Matrix::printed) continue;  // amplifies what differs, see docs/formulation.md
-        options.kept_pressures = 2;
+        options.warm_start_sub_steps = 2;
         for (const std::uint32_t work_group_size : {1u, 64u}) {
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
@@ -262,8 +261,8 @@ TEST_CASE("kept pressures: the guess a call starts from is the reference's, and 
                 CAPTURE(call);
                 CHECK(got.status == (call == 2 ? Status::diverged : Status::ok));
                 if (call == 2) continue;
-                CHECK(std::abs(got.cg_iterations - want.cg_iterations) <= want.sub_steps);
-                (call == 0 ? cold : warm) = got.cg_iterations;
+                CHECK(std::abs(got.iterations - want.iterations) <= want.sub_steps);
+                (call == 0 ? cold : warm) = got.iterations;
                 std::vector<double> correction(velocities);
                 for (std::size_t n = 0; n < correction.size(); ++n) correction[n] -= cloth.velocities[n];
                 const std::vector<float> read = buffers.read_velocities();
@@ -305,7 +304,7 @@ TEST_CASE("several cloths in one limiter: as each one alone", "[filter]") {
             CHECK(off <= 0.002 * greatest(alone.velocities));
             CHECK(stats[c].sub_steps == parameters[c].sub_steps);
             CHECK(stats[c].status == alone.stats.status);
-            CHECK(std::abs(stats[c].cg_iterations - alone.stats.cg_iterations) <= parameters[c].sub_steps);
+            CHECK(std::abs(stats[c].iterations - alone.stats.iterations) <= parameters[c].sub_steps);
             begin += alone.velocities.size();
         }
     }
@@ -327,7 +326,7 @@ TEST_CASE("many cloths in one launch: each the very bytes it has alone", "[filte
                                       .target_area_change = count % 3 == 0 ? 0.05f : 0.0f,
                                       .tolerance = count % 2 == 0 ? 0.1f : 1e-3f,
                                       .max_iterations = 3 + 7 * (count % 4),
-                                      .adaptive_iterations = count % 4 == 1 ? 2 : 0});
+                                      .adaptive_threshold = count % 4 == 1 ? 2 : 0});
             }
     REQUIRE(cloths.size() > 24);
     std::vector<std::shared_ptr<const Topology>> topologies;
@@ -377,14 +376,14 @@ TEST_CASE("a cloth that diverges leaves the others alone", "[filter]") {
 
 TEST_CASE("the filter agrees with the reference: small steps", "[filter]") {
     const MovingCloth cloth = moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 2);
-    Parameters walk = tight;
-    walk.sub_steps = 4;
-    walk.stepping = Stepping::small_steps;
+    Parameters small_steps = tight;
+    small_steps.sub_steps = 4;
+    small_steps.stepping = Stepping::small_steps;
     for (Options options : {variants[0], many_groups, one_group})
         for (const std::uint32_t work_group_size : {1u, 64u}) {
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
-            check_against_reference(cloth, options, walk);
+            check_against_reference(cloth, options, small_steps);
         }
 }
 
@@ -392,11 +391,11 @@ TEST_CASE("the filter agrees with the reference: small steps from a start with o
     MovingCloth cloth = moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 2);
     for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
         cloth.rest_areas[a] = static_cast<float>(cloth.rest_areas[a] * (a % 3 == 0 ? 1.3 : 0.9));
-    Parameters walk = tight;
-    walk.sub_steps = 6;
-    walk.stepping = Stepping::small_steps;
+    Parameters small_steps = tight;
+    small_steps.sub_steps = 6;
+    small_steps.stepping = Stepping::small_steps;
     for (const Options& options : {many_groups, one_group}) {
         CAPTURE(variant_name(options));
-        check_against_reference(cloth, options, walk);
+        check_against_reference(cloth, options, small_steps);
     }
 }

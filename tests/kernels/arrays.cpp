@@ -29,7 +29,7 @@ std::vector<std::uint32_t> vertex_places_of(const host::Adjacency& adjacency) {
 std::vector<std::vector<std::uint32_t>> triangle_places_of(const host::Adjacency& adjacency) {
     std::vector<std::vector<std::uint32_t>> places;
     std::uint32_t first_rest_area = 0;
-    for (const apsl_cloth& cloth : adjacency.cloths) {
+    for (const apslk_cloth& cloth : adjacency.cloths) {
         places.emplace_back(cloth.triangle_count);
         for (std::uint32_t place = cloth.triangle_begin; place < cloth.triangle_begin + cloth.triangle_count; ++place)
             places.back()[adjacency.triangle_order[place] - first_rest_area] = place;
@@ -49,14 +49,14 @@ std::vector<ScaledSolve> solves_of(std::span<const Cloth> cloths, Matrix matrix,
 // ‖r‖² of r = √(α D) r̄.
 double squared_norm(const ScaledSolve& solve, const std::vector<double>& scaled) {
     double squares = 0.0;
-    for (std::size_t a = 0; a < scaled.size(); ++a) squares += solve.damped_diagonal[a] * scaled[a] * scaled[a];
+    for (std::size_t a = 0; a < scaled.size(); ++a) squares += solve.scaled_diagonal[a] * scaled[a] * scaled[a];
     return squares;
 }
 
-std::vector<apsl_solve_state> fresh_states(std::span<const ScaledSolve> solves) {
-    std::vector<apsl_solve_state> states;
+std::vector<apslk_solve_state> fresh_states(std::span<const ScaledSolve> solves) {
+    std::vector<apslk_solve_state> states;
     for (const ScaledSolve& solve : solves) {
-        apsl_solve_state state = poison<apsl_solve_state>(1)[0];
+        apslk_solve_state state = poison<apslk_solve_state>(1)[0];
         state.stopped = 0;
         state.discarded = 0;
         state.iterating = 1;
@@ -145,10 +145,10 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       velocity_placement(velocity),
       array_offset(position.offset),
       cloths(adjacency.cloths),
-      parameters(std::vector<apsl_parameters>(source_cloths.size(), host::device_parameters(p))),
+      parameters(std::vector<apslk_parameters>(source_cloths.size(), host::device_parameters(p))),
       states(fresh_states(solves)),
-      stats(std::vector<apsl_stats>(source_cloths.size(), apsl_stats{})),
-      partials(poison<float>(source_cloths.size() * APSL_PARTIAL_KINDS * group_count)),
+      stats(std::vector<apslk_stats>(source_cloths.size(), apslk_stats{})),
+      partials(poison<float>(source_cloths.size() * APSLK_PARTIAL_KINDS * group_count)),
       vertex_order(adjacency.vertex_order),
       triangle_order(adjacency.triangle_order),
       triangles(adjacency.triangles),
@@ -160,12 +160,12 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       patches(adjacency.patches),
       patch_vertices(adjacency.patch_vertices),
       local_triangles(adjacency.local_triangles),
-      predicted(predicted_of(source_cloths, vertex_places)),
+      moved(predicted_of(source_cloths, vertex_places)),
       motion(poison<cl_float4>(adjacency.vertex_count)),
-      correction(poison<cl_float4>(adjacency.vertex_count)),
+      total_correction(poison<cl_float4>(adjacency.vertex_count)),
       gradients(gradients_of(source_cloths, solves, adjacency, triangle_places, p.regularization, alpha_per_triangle)),
       residual(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].right_hand_side[a]; })),
-      damped_diagonal(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].damped_diagonal[a]; })),
+      scaled_diagonal(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].scaled_diagonal[a]; })),
       values(values_of(solves, adjacency, triangle_places)),
       product(poisoned_triangles()),
       direction(poison<float>(adjacency.triangle_count)),
@@ -174,8 +174,7 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       vertex_bounds(poison<float>(adjacency.vertex_count)),
       start_errors(poisoned_triangles()),
       ordered_rest_areas(over_triangles([&](std::size_t c, std::size_t a) { return sources[c].rest_areas[a]; })),
-      ordered_regularization(
-          over_triangles([&](std::size_t c, std::size_t a) { return sources[c].regularization[a]; })),
+      ordered_scaling(over_triangles([&](std::size_t c, std::size_t a) { return sources[c].regularization[a]; })),
       caller_positions(placed(sources, &Cloth::positions, 3, position)),
       caller_velocities(placed(sources, &Cloth::velocities, 3, velocity)),
       inverse_masses(placed(sources, &Cloth::inverse_masses, 1, {1, array_offset})),
@@ -183,8 +182,9 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       regularization(placed(sources, &Cloth::regularization, 1, {1, array_offset})) {
     for (std::size_t c = 0; c < cloth_count(); ++c) {
         const std::vector<double>& b = solves[c].right_hand_side;
-        write_partial_sum(c, APSL_PARTIAL_RESIDUAL_EVEN, squared_norm(solves[c], b));
-        write_partial_sum(c, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
+        write_partial_sum(c, APSLK_PARTIAL_RESIDUAL_EVEN, squared_norm(solves[c], b));
+        write_partial_sum(c, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN,
+                          std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
     }
 }
 
@@ -222,14 +222,14 @@ double Arrays::unscaled_squared(std::size_t cloth, const std::vector<double>& sc
 
 std::vector<double> Arrays::partials_of(std::size_t cloth, int kind) const {
     const std::vector<float> all = partials.read();
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>((cloth * APSL_PARTIAL_KINDS + kind) * groups);
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>((cloth * APSLK_PARTIAL_KINDS + kind) * groups);
     return {begin, begin + groups};
 }
 
 void Arrays::write_partials(std::size_t cloth, int kind, const std::vector<double>& numbers) {
     std::vector<float> all = partials.read();
     for (std::size_t g = 0; g < groups; ++g)
-        all[(cloth * APSL_PARTIAL_KINDS + kind) * groups + g] = static_cast<float>(numbers[g]);
+        all[(cloth * APSLK_PARTIAL_KINDS + kind) * groups + g] = static_cast<float>(numbers[g]);
     partials.write(all);
 }
 
@@ -239,9 +239,9 @@ void Arrays::write_partial_sum(std::size_t cloth, int kind, double sum) {
     write_partials(cloth, kind, numbers);
 }
 
-void Arrays::edit_states(const std::function<void(apsl_solve_state&)>& edit) {
-    std::vector<apsl_solve_state> edited = states.read();
-    for (apsl_solve_state& state : edited) edit(state);
+void Arrays::edit_states(const std::function<void(apslk_solve_state&)>& edit) {
+    std::vector<apslk_solve_state> edited = states.read();
+    for (apslk_solve_state& state : edited) edit(state);
     states.write(edited);
 }
 

@@ -45,27 +45,27 @@ struct Arrays {
     Placement position_placement, velocity_placement;
     std::uint64_t array_offset;  ///< of inverse masses, rest areas and regularization, floats
 
-    DeviceArray<apsl_cloth> cloths;
-    DeviceArray<apsl_parameters> parameters;
-    DeviceArray<apsl_solve_state> states;
-    DeviceArray<apsl_stats> stats;
+    DeviceArray<apslk_cloth> cloths;
+    DeviceArray<apslk_parameters> parameters;
+    DeviceArray<apslk_solve_state> states;
+    DeviceArray<apslk_stats> stats;
     DeviceArray<float> partials;
     DeviceArray<std::uint32_t> vertex_order, triangle_order, triangles, corner_offsets, corners, row_offsets, columns;
     DeviceArray<std::uint8_t> shared;
     DeviceArray<cl_uint2> patches;
     DeviceArray<std::uint32_t> patch_vertices;
     DeviceArray<std::uint16_t> local_triangles;
-    DeviceArray<cl_float4> predicted;           ///< positions and inverse masses
-    DeviceArray<cl_float4> motion, correction;  ///< of a walk
+    DeviceArray<cl_float4> moved;                     ///< positions and inverse masses
+    DeviceArray<cl_float4> motion, total_correction;  ///< of small steps
     DeviceArray<Gradients> gradients;
     DeviceArray<float> residual;  ///< the scaled right-hand side
-    DeviceArray<float> damped_diagonal;
+    DeviceArray<float> scaled_diagonal;
     DeviceArray<float> values;   ///< the scaled matrix
     DeviceArray<float> product;  ///< poisoned, 0 in the padding; the rest is poisoned there too
     DeviceArray<float> direction, direction_product, pressure;
-    DeviceArray<float> vertex_bounds;                               ///< of bound_vertices
-    DeviceArray<float> start_errors;                                ///< of measure_step
-    DeviceArray<float> ordered_rest_areas, ordered_regularization;  ///< what order_triangle_values makes
+    DeviceArray<float> vertex_bounds;                        ///< of bound_vertices
+    DeviceArray<float> start_errors;                         ///< of measure_step
+    DeviceArray<float> ordered_rest_areas, ordered_scaling;  ///< what order_triangle_values makes
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
 
     std::size_t cloth_count() const { return sources.size(); }
@@ -85,7 +85,7 @@ struct Arrays {
     /// Puts the sum into the first group's place, 0 into the others.
     void write_partial_sum(std::size_t cloth, int kind, double sum);
     /// Rewrites each cloth's state.
-    void edit_states(const std::function<void(apsl_solve_state&)>& edit);
+    void edit_states(const std::function<void(apslk_solve_state&)>& edit);
 };
 
 }  // namespace apsl::test

@@ -33,25 +33,25 @@ void check_area_sums(const Arrays& arrays) {
             weights += cloth.rest_areas[a];
             area_ratio = std::max(area_ratio, area / cloth.rest_areas[a]);
         }
-        const std::vector<double> greatest_got = arrays.partials_of(c, APSL_PARTIAL_MAX_CHANGE);
+        const std::vector<double> greatest_got = arrays.partials_of(c, APSLK_PARTIAL_MAX_CHANGE);
         // An area comes of about ten roundings, and A − A⁰ keeps the absolute error of A.
         const double absolute = elementwise_tolerance(10) * area_ratio;
         CHECK(std::abs(*std::max_element(greatest_got.begin(), greatest_got.end()) - greatest) <= absolute);
         const double rms = std::sqrt(squares / weights);
-        const double got = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_SQUARED_CHANGE)) / weights);
+        const double got = std::sqrt(sum(arrays.partials_of(c, APSLK_PARTIAL_SQUARED_CHANGE)) / weights);
         CHECK(std::abs(got - rms) <= absolute + sum_tolerance(4, count) * rms);
         const double capped_rms = std::sqrt(capped / weights);
-        const double capped_got = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_CAPPED_CHANGE)) / weights);
+        const double capped_got = std::sqrt(sum(arrays.partials_of(c, APSLK_PARTIAL_CAPPED_CHANGE)) / weights);
         CHECK(std::abs(capped_got - capped_rms) <= absolute + sum_tolerance(4, count) * capped_rms);
-        CHECK(std::abs(sum(arrays.partials_of(c, APSL_PARTIAL_MEASURED)) - weights) <=
+        CHECK(std::abs(sum(arrays.partials_of(c, APSLK_PARTIAL_MEASURED)) - weights) <=
               sum_tolerance(1, count) * weights);
-        CHECK(sum(arrays.partials_of(c, APSL_PARTIAL_NOT_FINITE)) == 0.0);
+        CHECK(sum(arrays.partials_of(c, APSLK_PARTIAL_NOT_FINITE)) == 0.0);
     }
 }
 
 // What vector loads of later kernels read beyond a cloth's last triangle.
 void check_padding(const Arrays& arrays) {
-    for (const DeviceArray<float>* array : {&arrays.residual, &arrays.damped_diagonal})
+    for (const DeviceArray<float>* array : {&arrays.residual, &arrays.scaled_diagonal})
         for (const float number : arrays.padding_of(array->read())) CHECK(number == 0.0f);
 }
 
@@ -84,16 +84,16 @@ void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
         CHECK(farthest <= 0.5 * gradient_unit + elementwise_tolerance(30));
         const double residual_error = elementwise_tolerance(20) * norm(residual_scale);
         CHECK(difference(arrays.of_cloth(residual, c), solve.right_hand_side) <= residual_error);
-        const double scaled_norm = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_SCALED_RESIDUAL_EVEN)));
+        const double scaled_norm = std::sqrt(sum(arrays.partials_of(c, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN)));
         CHECK(std::abs(scaled_norm - norm(solve.right_hand_side)) <=
               residual_error + sum_tolerance(2, solve.scale.size()) * scaled_norm);
         // Unscaled, A − A⁰ of the triangles that can move: the error of an area, as above.
-        const double plain_norm = std::sqrt(sum(arrays.partials_of(c, APSL_PARTIAL_RESIDUAL_EVEN)));
+        const double plain_norm = std::sqrt(sum(arrays.partials_of(c, APSLK_PARTIAL_RESIDUAL_EVEN)));
         const double expected = std::sqrt(arrays.unscaled_squared(c, solve.right_hand_side));
         CHECK(std::abs(plain_norm - expected) <=
               elementwise_tolerance(20) * norm(areas) + sum_tolerance(2, solve.scale.size()) * plain_norm);
-        CHECK(difference(arrays.of_cloth(arrays.damped_diagonal.read(), c), solve.damped_diagonal) <=
-              elementwise_tolerance(12) * norm(solve.damped_diagonal));
+        CHECK(difference(arrays.of_cloth(arrays.scaled_diagonal.read(), c), solve.scaled_diagonal) <=
+              elementwise_tolerance(12) * norm(solve.scaled_diagonal));
     }
     check_padding(arrays);
 }
@@ -101,7 +101,7 @@ void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
 void poison_outputs(Arrays& arrays) {
     arrays.gradients.write(poison<Gradients>(arrays.gradients.size()));
     arrays.residual.write(arrays.poisoned_triangles());
-    arrays.damped_diagonal.write(arrays.poisoned_triangles());
+    arrays.scaled_diagonal.write(arrays.poisoned_triangles());
     arrays.partials.write(poison<float>(arrays.partials.size()));
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("assemble_gradients: writes no triangle of a stopped cloth", "[assembl
     const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
     Arrays arrays(cloths, Matrix::printed, paper_setting, 2);
     poison_outputs(arrays);
-    arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
+    arrays.edit_states([](apslk_solve_state& state) { state.stopped = 1; });
     launch::assemble_gradients(arrays, {});
     CHECK(same_bytes(arrays.gradients.read(), poison<Gradients>(arrays.gradients.size())));
     CHECK(same_bytes(arrays.residual.read(), arrays.poisoned_triangles()));
@@ -172,10 +172,10 @@ TEST_CASE("assemble_gradients: a triangle without area, free vertices or rest ar
         CHECK(residual[8] == 0.0);
         double measured = 0.0;
         for (std::size_t a = 0; a < 8; ++a) measured += cloths[0].rest_areas[a];
-        CHECK(arrays.partials_of(0, APSL_PARTIAL_MEASURED)[0] == Approx(measured).epsilon(1e-6));
-        CHECK(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)[0] == 0.0);
-        CHECK(std::isfinite(arrays.partials_of(0, APSL_PARTIAL_SQUARED_CHANGE)[0]));
-        CHECK(std::isfinite(arrays.partials_of(0, APSL_PARTIAL_RESIDUAL_EVEN)[0]));
+        CHECK(arrays.partials_of(0, APSLK_PARTIAL_MEASURED)[0] == Approx(measured).epsilon(1e-6));
+        CHECK(arrays.partials_of(0, APSLK_PARTIAL_NOT_FINITE)[0] == 0.0);
+        CHECK(std::isfinite(arrays.partials_of(0, APSLK_PARTIAL_SQUARED_CHANGE)[0]));
+        CHECK(std::isfinite(arrays.partials_of(0, APSLK_PARTIAL_RESIDUAL_EVEN)[0]));
     }
 }
 
@@ -185,11 +185,11 @@ TEST_CASE("assemble_gradients: alpha as the adaptive factor raises it", "[assemb
                                                 std::array{1.0, 2.0, 1.05}, std::array{1.01, 8.0, 1.36}}) {
         CAPTURE(alpha, factor);
         Arrays arrays(cloths, Matrix::printed, {.regularization = static_cast<float>(alpha), .sub_steps = 10}, 2);
-        arrays.edit_states([&](apsl_solve_state& state) { state.adaptive_factor = static_cast<float>(factor); });
+        arrays.edit_states([&](apslk_solve_state& state) { state.adaptive_factor = static_cast<float>(factor); });
         launch::assemble_gradients(arrays, {});
-        std::vector<double> expected = arrays.solves[0].damped_diagonal;
+        std::vector<double> expected = arrays.solves[0].scaled_diagonal;
         for (double& damped : expected) damped *= raised / static_cast<double>(static_cast<float>(alpha));
-        CHECK(difference(arrays.of_cloth(arrays.damped_diagonal.read(), 0), expected) <=
+        CHECK(difference(arrays.of_cloth(arrays.scaled_diagonal.read(), 0), expected) <=
               elementwise_tolerance(14) * norm(expected));
         for (const std::uint32_t place : arrays.triangle_places[0])
             CHECK(std::abs(static_cast<double>(arrays.gradients.read()[place].shift) - (raised - 1.0) / raised) <=
@@ -223,14 +223,14 @@ TEST_CASE("assemble_gradients: alpha as the schedule has it in each sub-step", "
 
 TEST_CASE("assemble_gradients: in small steps what is left of the start's error is not asked for, nor growth beyond 4",
           "[assemble_gradients]") {
-    const Parameters walk{.sub_steps = 5, .stepping = Stepping::small_steps};  // four parts
+    const Parameters small_steps{.sub_steps = 5, .stepping = Stepping::small_steps};  // four parts
     Cloth cloth = make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1);
     for (std::size_t a = 0; a < cloth.rest_areas.size(); a += 5) cloth.rest_areas[a] *= 10.0;
     const std::vector<Cloth> cloths{cloth};
     const std::vector<double> errors = random_numbers(cloth.rest_areas.size(), -1e-2, 1e-2, 3);
     for (const auto& [sub_step, left] : {std::pair{0, 0.75}, std::pair{1, 0.5}, std::pair{3, 0.0}, std::pair{4, 0.0}}) {
         CAPTURE(sub_step);
-        Arrays arrays(cloths, Matrix::consistent, walk, 2);
+        Arrays arrays(cloths, Matrix::consistent, small_steps, 2);
         arrays.start_errors.write(arrays.over_triangles([&](std::size_t, std::size_t a) { return errors[a]; }));
         launch::assemble_gradients(arrays, {}, sub_step);
         const ScaledSolve& solve = arrays.solves[0];
@@ -262,6 +262,30 @@ TEST_CASE("measure_area_change: awkward sizes in every work-group size", "[measu
         }
 }
 
+TEST_CASE("measure_step: the whole step's areas, and how far they are off where it starts", "[measure_step]") {
+    for (const std::uint32_t group : work_group_sizes())
+        for (const std::uint32_t size : awkward_sizes(group)) {
+            CAPTURE(group, size);
+            const std::vector<Cloth> cloths{make_cloth(strip(size), 1), make_cloth(tetrahedron(), 2)};
+            Arrays arrays(cloths, Matrix::consistent, {.sub_steps = 30}, 3, false, {3, 9});
+            arrays.partials.write(poison<float>(arrays.partials.size()));
+            std::vector<cl_float4> start = arrays.moved.read();  // twice as large, four times the area
+            for (cl_float4& vertex : start)
+                for (int k = 0; k < 3; ++k) vertex.s[k] *= 2.0f;
+            arrays.motion.write(start);
+            launch::measure_step(arrays, {.work_group_size = group});
+            check_area_sums(arrays);
+            const std::vector<float> errors = arrays.start_errors.read();
+            for (std::size_t c = 0; c < cloths.size(); ++c)
+                for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a) {
+                    const double area = 4.0 * arrays.solves[c].geometry[a].area;
+                    CHECK(std::abs(static_cast<double>(errors[arrays.triangle_places[c][a]]) -
+                                   (area - cloths[c].rest_areas[a])) <= elementwise_tolerance(10) * area);
+                }
+            CHECK(arrays.padding_of(errors) == std::vector<float>(arrays.padding_of(errors).size()));
+        }
+}
+
 TEST_CASE("measure_area_change: what decides counts a triangle by at most 100 %", "[measure_area_change]") {
     Cloth cloth = make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1);
     for (std::size_t a = 0; a < cloth.rest_areas.size(); a += 4)
@@ -270,8 +294,8 @@ TEST_CASE("measure_area_change: what decides counts a triangle by at most 100 %"
     Arrays arrays(cloths, Matrix::printed, paper_setting, 2);
     launch::measure_area_change(arrays, {});
     check_area_sums(arrays);
-    CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_CAPPED_CHANGE)) <
-          0.1 * sum(arrays.partials_of(0, APSL_PARTIAL_SQUARED_CHANGE)));
+    CHECK(sum(arrays.partials_of(0, APSLK_PARTIAL_CAPPED_CHANGE)) <
+          0.1 * sum(arrays.partials_of(0, APSLK_PARTIAL_SQUARED_CHANGE)));
 }
 
 TEST_CASE("measure_area_change: counts the triangles that are not finite", "[measure_area_change]") {
@@ -280,12 +304,12 @@ TEST_CASE("measure_area_change: counts the triangles that are not finite", "[mea
             CAPTURE(bad, group);
             const std::vector<Cloth> cloths{make_cloth(strip(40), 1)};
             Arrays arrays(cloths, Matrix::printed, paper_setting, 2);
-            std::vector<cl_float4> predicted = arrays.predicted.read();
-            predicted[arrays.vertex_places[20]].s[1] = static_cast<float>(bad);  // at three triangles of the strip
-            arrays.predicted.write(predicted);
+            std::vector<cl_float4> moved = arrays.moved.read();
+            moved[arrays.vertex_places[20]].s[1] = static_cast<float>(bad);  // at three triangles of the strip
+            arrays.moved.write(moved);
             launch::measure_area_change(arrays, {.work_group_size = group});
-            CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)) == 3.0);
+            CHECK(sum(arrays.partials_of(0, APSLK_PARTIAL_NOT_FINITE)) == 3.0);
             launch::assemble_gradients(arrays, {.work_group_size = group});
-            CHECK(sum(arrays.partials_of(0, APSL_PARTIAL_NOT_FINITE)) == 3.0);
+            CHECK(sum(arrays.partials_of(0, APSLK_PARTIAL_NOT_FINITE)) == 3.0);
         }
 }

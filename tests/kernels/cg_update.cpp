@@ -58,7 +58,7 @@ TEST_CASE("cg_update: two iterations by hand, awkward sizes in every work-group 
                     const std::vector<double> q = arrays.of_cloth(product, c);
                     gamma[c] = dot(r[c], r[c]);
                     const double curvature = dot(r[c], q);
-                    arrays.write_partial_sum(c, APSL_PARTIAL_CURVATURE, curvature);
+                    arrays.write_partial_sum(c, APSLK_PARTIAL_CURVATURE, curvature);
                     const double beta = k == 0 ? 0.0 : gamma[c] / previous_gamma[c];
                     const double step =
                         gamma[c] / (k == 0 ? curvature : curvature - beta * gamma[c] / previous_step[c]);
@@ -75,7 +75,7 @@ TEST_CASE("cg_update: two iterations by hand, awkward sizes in every work-group 
                     previous_step[c] = step;
                 }
                 std::size_t c = 0;
-                arrays.edit_states([&](apsl_solve_state& state) {
+                arrays.edit_states([&](apslk_solve_state& state) {
                     state.scaled_residual[slot] = static_cast<float>(gamma[c]);
                     ++c;
                 });
@@ -99,8 +99,8 @@ TEST_CASE("cg_update: two iterations by hand, awkward sizes in every work-group 
                         CHECK(std::abs(std::accumulate(parts.begin(), parts.end(), 0.0) - expected) <=
                               sum_tolerance(3, left.size()) * expected);
                     };
-                    check_sum(APSL_PARTIAL_SCALED_RESIDUAL_EVEN, dot(left, left));
-                    check_sum(APSL_PARTIAL_RESIDUAL_EVEN, arrays.unscaled_squared(c, left));
+                    check_sum(APSLK_PARTIAL_SCALED_RESIDUAL_EVEN, dot(left, left));
+                    check_sum(APSLK_PARTIAL_RESIDUAL_EVEN, arrays.unscaled_squared(c, left));
                     CHECK(arrays.states.read()[c].solve_iterations == k + 1);
                     for (const float padding : arrays.padding_of(arrays.residual.read())) CHECK(padding == 0.0f);
                     // On with the device's own numbers.
@@ -133,11 +133,11 @@ TEST_CASE("cg_update: a solve that has ended writes nothing and hands its residu
     const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
     Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
     arrays.product.write(arrays.residual.read());
-    arrays.write_partials(0, APSL_PARTIAL_RESIDUAL_EVEN, {1.0, 2.0, 3.0});
-    arrays.write_partials(0, APSL_PARTIAL_SCALED_RESIDUAL_EVEN, {4.0, 5.0, 6.0});
-    arrays.write_partials(0, APSL_PARTIAL_CURVATURE, {1.0, 1.0, 1.0});
+    arrays.write_partials(0, APSLK_PARTIAL_RESIDUAL_EVEN, {1.0, 2.0, 3.0});
+    arrays.write_partials(0, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN, {4.0, 5.0, 6.0});
+    arrays.write_partials(0, APSLK_PARTIAL_CURVATURE, {1.0, 1.0, 1.0});
     const std::vector<float> residual = arrays.residual.read();
-    arrays.edit_states([](apsl_solve_state& state) {
+    arrays.edit_states([](apslk_solve_state& state) {
         state.iterating = 0;
         state.scaled_residual[0] = 6.0f;
     });
@@ -145,8 +145,8 @@ TEST_CASE("cg_update: a solve that has ended writes nothing and hands its residu
     CHECK(same_bytes(residual, arrays.residual.read()));
     CHECK(same_bytes(arrays.pressure.read(), poison<float>(arrays.pressure.size())));
     CHECK(same_bytes(arrays.direction.read(), poison<float>(arrays.direction.size())));
-    CHECK(arrays.partials_of(0, APSL_PARTIAL_RESIDUAL_ODD) == std::vector<double>{1.0, 2.0, 3.0});
-    CHECK(arrays.partials_of(0, APSL_PARTIAL_SCALED_RESIDUAL_ODD) == std::vector<double>{4.0, 5.0, 6.0});
+    CHECK(arrays.partials_of(0, APSLK_PARTIAL_RESIDUAL_ODD) == std::vector<double>{1.0, 2.0, 3.0});
+    CHECK(arrays.partials_of(0, APSLK_PARTIAL_SCALED_RESIDUAL_ODD) == std::vector<double>{4.0, 5.0, 6.0});
     CHECK(arrays.states.read()[0].solve_iterations == 0);
 }
 
@@ -157,10 +157,10 @@ TEST_CASE("cg_update: no positive curvature, no step, then or later in the solve
         Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
         const std::vector<float> residual = arrays.residual.read();
         arrays.product.write(std::vector<float>(residual.size(), 0.0f));
-        arrays.write_partial_sum(0, APSL_PARTIAL_RESIDUAL_EVEN, 2.0);
-        arrays.write_partial_sum(0, APSL_PARTIAL_CURVATURE, curvature);
+        arrays.write_partial_sum(0, APSLK_PARTIAL_RESIDUAL_EVEN, 2.0);
+        arrays.write_partial_sum(0, APSLK_PARTIAL_CURVATURE, curvature);
         // A former solve's leavings, of any value.
-        arrays.edit_states([](apsl_solve_state& state) {
+        arrays.edit_states([](apslk_solve_state& state) {
             state.scaled_residual[0] = state.scaled_residual[1] = 2.0f;
             state.step[0] = state.step[1] = -3.0f;
         });

@@ -43,15 +43,15 @@ void check_pressures(const Arrays& arrays, std::size_t c, double rho, int produc
 
 }  // namespace
 
-TEST_CASE("chebyshev_step: the polynomial of the reference, on every kind of mesh", "[chebyshev]") {
+TEST_CASE("chebyshev_step: the polynomial of the reference, on every kind of mesh", "[chebyshev_step]") {
     constexpr float rho = 4.0f;  // above the greatest eigenvalue of any of these
     for (const std::uint32_t group : work_group_sizes())
         for (const float alpha : {3.0f, 1.3f, 1.1f}) {  // 1, 2 and 4 products
             CAPTURE(group, alpha);
             const Build build{.work_group_size = group, .chebyshev = true};
             Arrays arrays(every_kind_of_mesh(), Matrix::consistent, {.regularization = rho, .sub_steps = 1}, 3);
-            std::vector<apsl_parameters> parameters = arrays.parameters.read();
-            for (apsl_parameters& p : parameters) p.regularization = alpha;
+            std::vector<apslk_parameters> parameters = arrays.parameters.read();
+            for (apslk_parameters& p : parameters) p.regularization = alpha;
             arrays.parameters.write(parameters);
             const int products = chebyshev_products(alpha, 50);
             for (int k = 0; k < products; ++k) launch::chebyshev_step(arrays, build, 0, products, k);
@@ -59,18 +59,18 @@ TEST_CASE("chebyshev_step: the polynomial of the reference, on every kind of mes
         }
 }
 
-TEST_CASE("chebyshev_step: each cloth as many products as its α takes, a stopped one none", "[chebyshev]") {
+TEST_CASE("chebyshev_step: each cloth as many products as its α takes, a stopped one none", "[chebyshev_step]") {
     constexpr float rho = 4.0f;
     const Build build{.work_group_size = 64, .chebyshev = true};
     const std::vector<Cloth> cloths{make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 1),
                                     make_cloth(grid(9, 8, 1.0, 1.0, Diagonals::uniform), 2), make_cloth(fan(12), 3),
                                     make_cloth(book(4), 4)};
     Arrays arrays(cloths, Matrix::consistent, {.regularization = rho, .sub_steps = 1}, 2);
-    std::vector<apsl_parameters> parameters = arrays.parameters.read();
+    std::vector<apslk_parameters> parameters = arrays.parameters.read();
     const float alphas[] = {1.05f, 1.4f, 3.0f, 1.05f};
     for (std::size_t c = 0; c < 4; ++c) parameters[c].regularization = alphas[c];
     arrays.parameters.write(parameters);
-    std::vector<apsl_solve_state> states = arrays.states.read();
+    std::vector<apslk_solve_state> states = arrays.states.read();
     states[3].stopped = 1;
     arrays.states.write(states);
     const std::vector<double> before = arrays.of_cloth(arrays.pressure.read(), 3);
@@ -84,16 +84,16 @@ TEST_CASE("chebyshev_step: each cloth as many products as its α takes, a stoppe
     CHECK(arrays.states.read()[3].solve_iterations == 0);
 }
 
-TEST_CASE("chebyshev_step: the schedule's α, and the same bytes again", "[chebyshev]") {
+TEST_CASE("chebyshev_step: the schedule's α, and the same bytes again", "[chebyshev_step]") {
     constexpr float rho = 4.0f;
     const Build build{.work_group_size = 32, .chebyshev = true};
     const Parameters rising{.regularization = 1.4f, .sub_steps = 3, .first_regularization = 1.1f};
     std::vector<std::vector<float>> pressures;
     for (const int sub_step : {0, 1, 2, 2}) {
         Arrays arrays(every_kind_of_mesh(), Matrix::consistent, {.regularization = rho, .sub_steps = 1}, 3);
-        std::vector<apsl_parameters> parameters = arrays.parameters.read();
+        std::vector<apslk_parameters> parameters = arrays.parameters.read();
         const float step = std::log2(0.1f / 0.4f) / 2.0f;
-        for (apsl_parameters& p : parameters) {
+        for (apslk_parameters& p : parameters) {
             p.regularization = rising.regularization;
             p.damping_step = step;
             p.sub_steps = 3;
@@ -108,14 +108,14 @@ TEST_CASE("chebyshev_step: the schedule's α, and the same bytes again", "[cheby
     CHECK(!same_bytes(pressures[1], pressures[2]));
 }
 
-TEST_CASE("bound_vertices: the reference's bounds, a fifth more where a mass is raised", "[bound_matrix]") {
+TEST_CASE("bound_vertices: the reference's bounds, a fifth more where a mass is raised", "[bound_vertices]") {
     constexpr Parameters small_steps{.sub_steps = 30};
     for (const std::uint32_t group : work_group_sizes())
         for (const bool raised : {false, true}) {
             CAPTURE(group, raised);
             const std::vector<Cloth> cloths = every_kind_of_mesh();
             Arrays arrays(cloths, Matrix::consistent, small_steps, 3);
-            std::vector<cl_float4> given = arrays.predicted.read();
+            std::vector<cl_float4> given = arrays.moved.read();
             if (raised)
                 for (cl_float4& vertex : given) vertex.s[3] *= 2.0f;
             arrays.motion.write(given);
@@ -135,10 +135,10 @@ TEST_CASE("bound_vertices: the reference's bounds, a fifth more where a mass is 
         }
 }
 
-TEST_CASE("bound_vertices: a gradient of zero counts as one of any direction", "[bound_matrix]") {
+TEST_CASE("bound_vertices: a gradient of zero counts as one of any direction", "[bound_vertices]") {
     const std::vector<Cloth> cloths{make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1)};
     Arrays arrays(cloths, Matrix::consistent, {.sub_steps = 30}, 2);
-    arrays.motion.write(arrays.predicted.read());
+    arrays.motion.write(arrays.moved.read());
     std::vector<Gradients> gradients = arrays.gradients.read();
     std::vector<reference::TriangleGeometry<double>> geometry = arrays.solves[0].geometry;
     for (std::size_t a = 0; a < geometry.size(); a += 7) {
@@ -178,7 +178,7 @@ TEST_CASE("assemble_gradients for a Chebyshev solve: scaled by the bound, no shi
             reference::TriangleVector<double> want;
             reference::diagonal_bound<double>(*cloths[c].topology, arrays.solves[c].geometry, cloths[c].inverse_masses,
                                               own, want);
-            const std::vector<double> got = arrays.of_cloth(arrays.damped_diagonal.read(), c);
+            const std::vector<double> got = arrays.of_cloth(arrays.scaled_diagonal.read(), c);
             for (std::size_t a = 0; a < got.size(); ++a) {
                 CAPTURE(c, a);
                 // The reference's gradients of a triangle without area are zero; a length has no direction to lose.

@@ -55,7 +55,7 @@ ScaledSolve scaled_solve(const Cloth& cloth, Matrix matrix, const std::vector<do
     reference::regularize(std::span<const double>(alpha), solve.rows);
     for (Eigen::Index a = 0; a < solve.rows.rows(); ++a) {
         const double d = solve.rows.coeff(a, a);
-        solve.damped_diagonal.push_back(d);
+        solve.scaled_diagonal.push_back(d);
         solve.scale.push_back(d > 0.0 ? 1.0 / std::sqrt(d) : 0.0);
         std::array<Eigen::Vector3d, 3>& gradients = solve.scaled_gradients.emplace_back();
         for (std::size_t k = 0; k < 3; ++k)

@@ -42,7 +42,7 @@ struct ScaledSolve {
     std::vector<reference::TriangleGeometry<double>> geometry;
     std::vector<double> scale;                                     ///< s = 1/√(α D), 0 where D is
     std::vector<std::array<Eigen::Vector3d, 3>> scaled_gradients;  ///< ḡ_k = s √(w_k / 2) g_k, of each corner
-    std::vector<double> damped_diagonal;                           ///< α D
+    std::vector<double> scaled_diagonal;                           ///< α D
     std::vector<double> right_hand_side;                           ///< s (A − A⁰)
     reference::SparseMatrix<double> rows;                          ///< S (G + (α − 1) D) S
 };

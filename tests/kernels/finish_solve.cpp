@@ -20,7 +20,7 @@ void iterate(Arrays& arrays, const Build& build, int from, int to) {
 }
 
 double residual_left(const Arrays& arrays, std::size_t cloth) {
-    const std::vector<double> parts = arrays.partials_of(cloth, APSL_PARTIAL_RESIDUAL_EVEN);
+    const std::vector<double> parts = arrays.partials_of(cloth, APSLK_PARTIAL_RESIDUAL_EVEN);
     return std::sqrt(std::accumulate(parts.begin(), parts.end(), 0.0));
 }
 
@@ -37,7 +37,7 @@ double true_residual(const Arrays& arrays, std::size_t cloth) {
 
 struct Everything {
     std::vector<float> residual, pressure, direction, partials;
-    std::vector<apsl_solve_state> states;
+    std::vector<apslk_solve_state> states;
 };
 
 Everything read(const Arrays& arrays) {
@@ -134,7 +134,7 @@ TEST_CASE("finish_solve: takes up no solve that has stopped, converged, broken d
         const Build build{.work_group_size = group};
         Arrays stopped(cloths, Matrix::consistent, long_solve, 3);
         iterate(stopped, build, 0, 4);
-        stopped.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
+        stopped.edit_states([](apslk_solve_state& state) { state.stopped = 1; });
         const Everything before_stopped = read(stopped);
         launch::finish_solve(stopped, build, 4);
         check_same(before_stopped, read(stopped));
@@ -150,7 +150,7 @@ TEST_CASE("finish_solve: takes up no solve that has stopped, converged, broken d
         // Broken down: after a step of zero there is no other.
         Arrays broken(cloths, Matrix::consistent, long_solve, 3);
         iterate(broken, build, 0, 3);
-        broken.edit_states([](apsl_solve_state& state) { state.step[0] = 0.0f; });
+        broken.edit_states([](apslk_solve_state& state) { state.step[0] = 0.0f; });
         iterate(broken, build, 3, 4);
         REQUIRE(broken.states.read()[0].solve_iterations == 3);
         const Everything before_broken = read(broken);
@@ -166,7 +166,7 @@ TEST_CASE("finish_solve: takes up no solve that has stopped, converged, broken d
             iterate(ended, build, 0, 2);
             REQUIRE(ended.states.read()[0].solve_iterations == 2);
             if (!out_of_iterations) {
-                std::vector<apsl_parameters> parameters = ended.parameters.read();
+                std::vector<apslk_parameters> parameters = ended.parameters.read();
                 parameters[0].max_iterations = 50;
                 parameters[0].tolerance_squared = 0.99f;
                 ended.parameters.write(parameters);

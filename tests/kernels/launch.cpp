@@ -17,12 +17,12 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
     const auto define = [](const char* macro, std::uint32_t value) {
         return std::string(" -D ") + macro + "=" + std::to_string(value);
     };
-    const std::string options = "-cl-std=CL1.2" + define("APSL_WORK_GROUP_SIZE", build.work_group_size) +
-                                define("APSL_POSITION_STRIDE", arrays.position_placement.stride) +
-                                define("APSL_VELOCITY_STRIDE", arrays.velocity_placement.stride) +
-                                define("APSL_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
-                                define("APSL_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
-                                define("APSL_CHEBYSHEV", build.chebyshev ? 1 : 0);
+    const std::string options = "-cl-std=CL1.2" + define("APSLK_WORK_GROUP_SIZE", build.work_group_size) +
+                                define("APSLK_POSITION_STRIDE", arrays.position_placement.stride) +
+                                define("APSLK_VELOCITY_STRIDE", arrays.velocity_placement.stride) +
+                                define("APSLK_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
+                                define("APSLK_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
+                                define("APSLK_CHEBYSHEV", build.chebyshev ? 1 : 0);
     // Never released, see transfer_queue() in support/opencl.cpp.
     static auto& programs = *new std::map<std::string, host::ProgramHandle>;
     static auto& kernels = *new std::map<std::string, host::Kernel>;
@@ -80,7 +80,7 @@ std::vector<std::uint32_t> awkward_sizes(std::uint32_t work_group_size) {
 
 namespace launch {
 
-void set_parameters(Arrays& a, const Build& build, const apsl_parameter_block& block, std::uint32_t first,
+void set_parameters(Arrays& a, const Build& build, const apslk_parameter_block& block, std::uint32_t first,
                     std::uint32_t count) {
     const host::Kernel& k = kernel(a, build, "set_parameters.cl", "set_parameters");
     run(arguments::set_parameters(k, a, block, first, count), 1, build, 1);
@@ -122,9 +122,9 @@ void judge_whole_step(Arrays& a, const Build& build) {
     run(arguments::judge_whole_step(k, a), 1, build, a.cloth_count());
 }
 
-void start_walk(Arrays& a, const Build& build) {
-    const host::Kernel& k = kernel(a, build, "start_walk.cl", "start_walk");
-    run(arguments::start_walk(k, a, caller(a, build)), a.groups, build, a.cloth_count());
+void start_small_steps(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "start_small_steps.cl", "start_small_steps");
+    run(arguments::start_small_steps(k, a, caller(a, build)), a.groups, build, a.cloth_count());
 }
 
 void begin_solve(Arrays& a, const Build& build, int sub_step) {
@@ -158,12 +158,12 @@ void matrix_free_apply_dot(Arrays& a, const Build& build, int iteration) {
 }
 
 void measure_guess(Arrays& a, const Build& build) {
-    const host::Kernel& k = kernel(a, build, "first_guess.cl", "measure_guess");
+    const host::Kernel& k = kernel(a, build, "warm_start.cl", "measure_guess");
     run(arguments::measure_guess(k, a, a.pressure), a.groups, build, a.cloth_count());
 }
 
 void start_from_guess(Arrays& a, const Build& build) {
-    const host::Kernel& k = kernel(a, build, "first_guess.cl", "start_from_guess");
+    const host::Kernel& k = kernel(a, build, "warm_start.cl", "start_from_guess");
     run(arguments::start_from_guess(k, a, a.pressure), a.groups, build, a.cloth_count());
 }
 

@@ -25,7 +25,7 @@ std::vector<std::uint32_t> awkward_sizes(std::uint32_t work_group_size);
 
 namespace launch {
 
-void set_parameters(Arrays& arrays, const Build& build, const apsl_parameter_block& block, std::uint32_t first,
+void set_parameters(Arrays& arrays, const Build& build, const apslk_parameter_block& block, std::uint32_t first,
                     std::uint32_t count);
 void predict_positions(Arrays& arrays, const Build& build);
 /// Of the caller's positions, into the caller's rest areas.
@@ -35,7 +35,7 @@ void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
 void measure_area_change(Arrays& arrays, const Build& build);
 void measure_step(Arrays& arrays, const Build& build);
 void judge_whole_step(Arrays& arrays, const Build& build);
-void start_walk(Arrays& arrays, const Build& build);
+void start_small_steps(Arrays& arrays, const Build& build);
 void begin_solve(Arrays& arrays, const Build& build, int sub_step);
 void end_call(Arrays& arrays, const Build& build);
 void assemble_pressure_csr(Arrays& arrays, const Build& build);

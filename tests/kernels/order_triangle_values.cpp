@@ -13,13 +13,13 @@ namespace {
 // zeros, as the host makes it, stays zeros.
 void check_ordered(Arrays& arrays, const Build& build) {
     const std::vector<float> rest_areas = arrays.ordered_rest_areas.read();
-    const std::vector<float> regularization = arrays.ordered_regularization.read();
+    const std::vector<float> regularization = arrays.ordered_scaling.read();
     const std::vector<float> poisoned = arrays.poisoned_triangles();
     arrays.ordered_rest_areas.write(poisoned);
-    arrays.ordered_regularization.write(poisoned);
+    arrays.ordered_scaling.write(poisoned);
     launch::order_triangle_values(arrays, build);
     CHECK(same_bytes(rest_areas, arrays.ordered_rest_areas.read()));
-    CHECK(same_bytes(build.alpha_per_triangle ? regularization : poisoned, arrays.ordered_regularization.read()));
+    CHECK(same_bytes(build.alpha_per_triangle ? regularization : poisoned, arrays.ordered_scaling.read()));
 }
 
 }  // namespace
@@ -41,6 +41,6 @@ TEST_CASE("order_triangle_values: alpha below 1 and NaN become 1", "[order_trian
     cloths[0].regularization = {0.5, std::nan(""), -1.0, 1.0, 3.0};
     Arrays arrays(cloths, Matrix::printed, paper_setting, 1, false);
     launch::order_triangle_values(arrays, {.alpha_per_triangle = true});
-    const std::vector<double> ordered = arrays.of_cloth(arrays.ordered_regularization.read(), 0);
+    const std::vector<double> ordered = arrays.of_cloth(arrays.ordered_scaling.read(), 0);
     CHECK(ordered == std::vector<double>{1.0, 1.0, 1.0, 1.0, 3.0});
 }

@@ -10,36 +10,36 @@ using namespace apsl::test;
 namespace {
 
 void check_predicted(Arrays& arrays, const Build& build) {
-    arrays.predicted.write(poison<cl_float4>(arrays.predicted.size()));
-    arrays.stats.write(poison<apsl_stats>(arrays.stats.size()));
-    std::vector<apsl_solve_state> states = poison<apsl_solve_state>(arrays.states.size());
-    for (apsl_solve_state& state : states) state.adaptive_factor = 4.0f;
+    arrays.moved.write(poison<cl_float4>(arrays.moved.size()));
+    arrays.stats.write(poison<apslk_stats>(arrays.stats.size()));
+    std::vector<apslk_solve_state> states = poison<apslk_solve_state>(arrays.states.size());
+    for (apslk_solve_state& state : states) state.adaptive_factor = 4.0f;
     arrays.states.write(states);
     launch::predict_positions(arrays, build);
 
-    const std::vector<cl_float4> predicted = arrays.predicted.read();
+    const std::vector<cl_float4> moved = arrays.moved.read();
     const float time_step = arrays.parameters.read()[0].time_step;
     std::size_t i = 0;
     std::size_t wrong = 0;
     for (const Cloth& cloth : arrays.sources)
         for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v, ++i) {
             // OpenCL's fma is correctly rounded: the host's gives the same bits.
-            const cl_float4& x = predicted[arrays.vertex_places[i]];
+            const cl_float4& x = moved[arrays.vertex_places[i]];
             for (std::size_t k = 0; k < 3; ++k)
                 wrong += x.s[k] != std::fma(time_step, static_cast<float>(cloth.velocities[3 * v + k]),
                                             static_cast<float>(cloth.positions[3 * v + k]));
             wrong += x.s[3] != static_cast<float>(cloth.inverse_masses[v]);
         }
     CHECK(wrong == 0);
-    for (const apsl_solve_state& state : arrays.states.read()) {
+    for (const apslk_solve_state& state : arrays.states.read()) {
         CHECK(state.stopped == 0);
         CHECK(state.adaptive_factor == 4.0f);  // outlives the call
     }
-    for (const apsl_stats& stats : arrays.stats.read()) {
+    for (const apslk_stats& stats : arrays.stats.read()) {
         CHECK(stats.sub_steps == 0);
-        CHECK(stats.cg_iterations == 0);
+        CHECK(stats.iterations == 0);
         CHECK(stats.residual == 0.0f);
-        CHECK(stats.status == APSL_STATUS_OK);
+        CHECK(stats.status == APSLK_STATUS_OK);
     }
 }
 

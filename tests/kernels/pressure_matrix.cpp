@@ -41,7 +41,7 @@ void check_product(Arrays& arrays, const Build& build, bool assembled) {
 
     const std::vector<float> residual = arrays.residual.read();
     const std::vector<float> product = arrays.product.read();
-    const std::vector<apsl_solve_state> states = arrays.states.read();
+    const std::vector<apslk_solve_state> states = arrays.states.read();
     for (const float padding : arrays.padding_of(product)) CHECK(padding == 0.0f);
     for (std::size_t c = 0; c < arrays.cloth_count(); ++c) {
         const std::vector<double> r = arrays.of_cloth(residual, c);
@@ -54,13 +54,13 @@ void check_product(Arrays& arrays, const Build& build, bool assembled) {
         CHECK(difference(got, {want.data(), got.size()}) <=
               (elementwise_tolerance(entry_roundings) + stored) * magnitudes.norm());
 
-        const std::vector<double> parts = arrays.partials_of(c, APSL_PARTIAL_CURVATURE);
+        const std::vector<double> parts = arrays.partials_of(c, APSLK_PARTIAL_CURVATURE);
         const double curvature = std::accumulate(parts.begin(), parts.end(), 0.0);
         CHECK(std::abs(curvature - vector.dot(want)) <=
               (sum_tolerance(entry_roundings, r.size()) + stored) * vector.cwiseAbs().dot(magnitudes));
         CHECK(states[c].iterating == 1);
         // γ, published by the first group.
-        const std::vector<double> gamma = arrays.partials_of(c, APSL_PARTIAL_SCALED_RESIDUAL_EVEN);
+        const std::vector<double> gamma = arrays.partials_of(c, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN);
         CHECK(static_cast<double>(states[c].scaled_residual[0]) == std::accumulate(gamma.begin(), gamma.end(), 0.0));
     }
 }
@@ -144,16 +144,16 @@ TEST_CASE("csr_spmv_dot and matrix_free_apply_dot: nothing is written once stopp
                 CHECK(same_bytes(arrays.product.read(), arrays.poisoned_triangles()));
             };
             Arrays stopped(cloths, matrix, {}, 2);
-            stopped.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
+            stopped.edit_states([](apslk_solve_state& state) { state.stopped = 1; });
             check_idle(stopped, 0);
 
             Arrays converged(cloths, matrix, {.tolerance = 0.1f}, 2);
             const double initial = static_cast<double>(converged.states.read()[0].initial_residual);
-            converged.write_partial_sum(0, APSL_PARTIAL_RESIDUAL_ODD, 0.0099 * initial);
+            converged.write_partial_sum(0, APSLK_PARTIAL_RESIDUAL_ODD, 0.0099 * initial);
             check_idle(converged, 1);
 
             Arrays out_of_iterations(cloths, matrix, {.max_iterations = 3}, 2);
-            out_of_iterations.write_partial_sum(0, APSL_PARTIAL_RESIDUAL_ODD, initial);
+            out_of_iterations.write_partial_sum(0, APSLK_PARTIAL_RESIDUAL_ODD, initial);
             check_idle(out_of_iterations, 3);
         }
 }

@@ -19,15 +19,15 @@ struct Reported {
     Arrays arrays;
 
     explicit Reported(const Parameters& parameters) : arrays(cloths, Matrix::printed, parameters, groups) {
-        arrays.write_partials(0, APSL_PARTIAL_MAX_CHANGE, {0.1, 0.0, 0.3, 0.2, 0.0});
-        arrays.write_partials(0, APSL_PARTIAL_SQUARED_CHANGE, {0.25, 0.25, 0.125, 0.125, 0.25});
-        arrays.write_partials(0, APSL_PARTIAL_MEASURED, {20.0, 20.0, 20.0, 20.0, 20.0});
-        arrays.write_partials(0, APSL_PARTIAL_NOT_FINITE, {0.0, 0.0, 0.0, 0.0, 0.0});
-        arrays.write_partials(0, APSL_PARTIAL_BAD_VERTICES, {0.0, 0.0, 0.0, 0.0, 0.0});
-        arrays.write_partials(0, APSL_PARTIAL_RESIDUAL_EVEN, {1.0, 2.0, 3.0, 4.0, 5.0});
+        arrays.write_partials(0, APSLK_PARTIAL_MAX_CHANGE, {0.1, 0.0, 0.3, 0.2, 0.0});
+        arrays.write_partials(0, APSLK_PARTIAL_SQUARED_CHANGE, {0.25, 0.25, 0.125, 0.125, 0.25});
+        arrays.write_partials(0, APSLK_PARTIAL_MEASURED, {20.0, 20.0, 20.0, 20.0, 20.0});
+        arrays.write_partials(0, APSLK_PARTIAL_NOT_FINITE, {0.0, 0.0, 0.0, 0.0, 0.0});
+        arrays.write_partials(0, APSLK_PARTIAL_BAD_VERTICES, {0.0, 0.0, 0.0, 0.0, 0.0});
+        arrays.write_partials(0, APSLK_PARTIAL_RESIDUAL_EVEN, {1.0, 2.0, 3.0, 4.0, 5.0});
     }
-    apsl_solve_state state() const { return arrays.states.read()[0]; }
-    apsl_stats stats() const { return arrays.stats.read()[0]; }
+    apslk_solve_state state() const { return arrays.states.read()[0]; }
+    apslk_stats stats() const { return arrays.stats.read()[0]; }
 };
 
 }  // namespace
@@ -35,13 +35,13 @@ struct Reported {
 TEST_CASE("begin_solve: begins a sub-step with the sum of the residual's parts", "[begin_solve]") {
     for (const std::uint32_t group : work_group_sizes()) {
         Reported reported({.regularization = 1.2f, .sub_steps = 2});
-        reported.arrays.edit_states([](apsl_solve_state& state) { state.solve_iterations = 7; });
+        reported.arrays.edit_states([](apslk_solve_state& state) { state.solve_iterations = 7; });
         launch::begin_solve(reported.arrays, {.work_group_size = group}, 1);
         CHECK(reported.state().stopped == 0);
         CHECK(reported.state().initial_residual == 15.0f);
         CHECK(reported.state().solve_iterations == 0);
         CHECK(reported.stats().sub_steps == 1);
-        CHECK(reported.stats().status == APSL_STATUS_OK);
+        CHECK(reported.stats().status == APSLK_STATUS_OK);
     }
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("begin_solve: stops at the target, at the count, and once stopped stay
         launch::begin_solve(at.arrays, {}, 0);
         CHECK(at.state().stopped == 1);
         CHECK(at.stats().sub_steps == 0);
-        CHECK(at.stats().status == APSL_STATUS_OK);
+        CHECK(at.stats().status == APSLK_STATUS_OK);
         Reported above({.regularization = 1.2f, .sub_steps = 10, .target_area_change = 0.29f});
         launch::begin_solve(above.arrays, {}, 0);
         CHECK(above.state().stopped == 0);
@@ -64,7 +64,7 @@ TEST_CASE("begin_solve: stops at the target, at the count, and once stopped stay
     }
     SECTION("once stopped") {
         Reported reported(paper_setting);
-        reported.arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
+        reported.arrays.edit_states([](apslk_solve_state& state) { state.stopped = 1; });
         const auto before = reported.arrays.states.read();
         launch::begin_solve(reported.arrays, {}, 0);
         CHECK(same_bytes(before, reported.arrays.states.read()));
@@ -78,11 +78,11 @@ TEST_CASE("begin_solve: what is not finite is diverged", "[begin_solve]") {
         reported.arrays.write_partials(0, kind, numbers);
         launch::begin_solve(reported.arrays, {}, 0);
         return reported.state().stopped == 1 && reported.stats().sub_steps == 0 &&
-               reported.stats().status == APSL_STATUS_DIVERGED;
+               reported.stats().status == APSLK_STATUS_DIVERGED;
     };
-    CHECK(diverges(APSL_PARTIAL_NOT_FINITE, {0.0, 0.0, 0.0, 1.0, 0.0}));
-    CHECK(diverges(APSL_PARTIAL_RESIDUAL_EVEN, {0.0, 0.0, std::nan(""), 0.0, 0.0}));
-    CHECK(diverges(APSL_PARTIAL_RESIDUAL_EVEN, {infinity, 0.0, 0.0, 0.0, 0.0}));
+    CHECK(diverges(APSLK_PARTIAL_NOT_FINITE, {0.0, 0.0, 0.0, 1.0, 0.0}));
+    CHECK(diverges(APSLK_PARTIAL_RESIDUAL_EVEN, {0.0, 0.0, std::nan(""), 0.0, 0.0}));
+    CHECK(diverges(APSLK_PARTIAL_RESIDUAL_EVEN, {infinity, 0.0, 0.0, 0.0, 0.0}));
 }
 
 TEST_CASE("end_call: greatest and RMS change of all groups", "[end_call]") {
@@ -91,18 +91,18 @@ TEST_CASE("end_call: greatest and RMS change of all groups", "[end_call]") {
         launch::end_call(reported.arrays, {.work_group_size = group});
         CHECK(reported.stats().max_area_change == 0.3f);
         CHECK(std::abs(static_cast<double>(reported.stats().rms_area_change) - 0.1) <= elementwise_tolerance(3) * 0.1);
-        CHECK(reported.stats().status == APSL_STATUS_OK);
+        CHECK(reported.stats().status == APSLK_STATUS_OK);
     }
 }
 
 TEST_CASE("end_call: a call that went wrong is diverged, no measured triangle means no change", "[end_call]") {
     Reported wrong(paper_setting);
-    wrong.arrays.write_partials(0, APSL_PARTIAL_NOT_FINITE, {0.0, 0.0, 2.0, 0.0, 0.0});
+    wrong.arrays.write_partials(0, APSLK_PARTIAL_NOT_FINITE, {0.0, 0.0, 2.0, 0.0, 0.0});
     launch::end_call(wrong.arrays, {});
-    CHECK(wrong.stats().status == APSL_STATUS_DIVERGED);
+    CHECK(wrong.stats().status == APSLK_STATUS_DIVERGED);
 
     Reported empty(paper_setting);
-    for (const int kind : {APSL_PARTIAL_MAX_CHANGE, APSL_PARTIAL_SQUARED_CHANGE, APSL_PARTIAL_MEASURED})
+    for (const int kind : {APSLK_PARTIAL_MAX_CHANGE, APSLK_PARTIAL_SQUARED_CHANGE, APSLK_PARTIAL_MEASURED})
         empty.arrays.write_partials(0, kind, std::vector<double>(groups, 0.0));
     launch::end_call(empty.arrays, {});
     CHECK(empty.stats().max_area_change == 0.0f);
@@ -110,10 +110,10 @@ TEST_CASE("end_call: a call that went wrong is diverged, no measured triangle me
 }
 
 TEST_CASE("judge_whole_step: what a whole step would do, and a stop at the target", "[judge_whole_step]") {
-    const auto begun = [](float target, float walked) {
-        Reported reported({.sub_steps = static_cast<int>(walked) + 1,
+    const auto begun = [](float target, float small_steps) {
+        Reported reported({.sub_steps = static_cast<int>(small_steps) + 1,
                            .target_area_change = target,
-                           .stepping = walked > 0.0f ? Stepping::small_steps : Stepping::whole_step});
+                           .stepping = small_steps > 0.0f ? Stepping::small_steps : Stepping::whole_step});
         launch::judge_whole_step(reported.arrays, {});
         return std::pair(reported.stats(), reported.state());
     };
@@ -127,7 +127,7 @@ TEST_CASE("judge_whole_step: what a whole step would do, and a stop at the targe
     CHECK(begun(0.3f, 0.0f).first.initial_max_area_change == 0.0f);
 }
 
-TEST_CASE("begin_solve: on a walk only its end is held against the target", "[begin_solve]") {
+TEST_CASE("begin_solve: in small steps only its end is held against the target", "[begin_solve]") {
     for (const int sub_step : {0, 2, 3}) {
         CAPTURE(sub_step);
         Reported reported({.sub_steps = 4, .target_area_change = 0.3f, .stepping = Stepping::small_steps});
@@ -145,28 +145,28 @@ TEST_CASE("end_call: never worse than at the start", "[end_call]") {
     };
     // What the groups report is 0.3 and 0.1.
     const std::vector<Outcome> outcomes{
-        {0.4f, 0.2f, APSL_STATUS_OK, 0, 0.3f, 0.1f},          // both fell
-        {0.2f, 0.2f, APSL_STATUS_WORSENED, 0, 0.3f, 0.1f},    // the greatest rose, the capped RMS fell
-        {0.4f, 0.05f, APSL_STATUS_WORSENED, 1, 0.4f, 0.05f},  // the capped RMS rose
-        {0.2f, 0.05f, APSL_STATUS_WORSENED, 1, 0.2f, 0.05f},  // both rose
-        {9e-6f, 3e-6f, APSL_STATUS_OK, 1, 9e-6f, 3e-6f},      // was at rest
+        {0.4f, 0.2f, APSLK_STATUS_OK, 0, 0.3f, 0.1f},          // both fell
+        {0.2f, 0.2f, APSLK_STATUS_WORSENED, 0, 0.3f, 0.1f},    // the greatest rose, the capped RMS fell
+        {0.4f, 0.05f, APSLK_STATUS_WORSENED, 1, 0.4f, 0.05f},  // the capped RMS rose
+        {0.2f, 0.05f, APSLK_STATUS_WORSENED, 1, 0.2f, 0.05f},  // both rose
+        {9e-6f, 3e-6f, APSLK_STATUS_OK, 1, 9e-6f, 3e-6f},      // was at rest
     };
     for (const Outcome& expected : outcomes) {
         CAPTURE(expected.initial_max, expected.initial_rms);
         Reported reported(paper_setting);
-        apsl_stats stats{};
+        apslk_stats stats{};
         stats.sub_steps = 10;
         stats.initial_max_area_change = expected.initial_max;
         stats.initial_rms_area_change = expected.initial_rms;
         reported.arrays.stats.write({stats});
         // The RMS has no say but in the status; the capped one is as great here.
-        reported.arrays.write_partial_sum(0, APSL_PARTIAL_CAPPED_CHANGE, 0.01);
-        reported.arrays.write_partial_sum(0, APSL_PARTIAL_MEASURED, 1.0);
-        reported.arrays.write_partial_sum(0, APSL_PARTIAL_SQUARED_CHANGE, 0.01);
-        reported.arrays.write_partial_sum(0, APSL_PARTIAL_EXTENT, 0.0);
-        reported.arrays.edit_states([&](apsl_solve_state& state) { state.initial_capped_rms = expected.initial_rms; });
+        reported.arrays.write_partial_sum(0, APSLK_PARTIAL_CAPPED_CHANGE, 0.01);
+        reported.arrays.write_partial_sum(0, APSLK_PARTIAL_MEASURED, 1.0);
+        reported.arrays.write_partial_sum(0, APSLK_PARTIAL_SQUARED_CHANGE, 0.01);
+        reported.arrays.write_partial_sum(0, APSLK_PARTIAL_EXTENT, 0.0);
+        reported.arrays.edit_states([&](apslk_solve_state& state) { state.initial_capped_rms = expected.initial_rms; });
         launch::end_call(reported.arrays, {});
-        const apsl_stats got = reported.stats();
+        const apslk_stats got = reported.stats();
         CHECK(got.status == expected.status);
         CHECK(reported.state().discarded == expected.discarded);
         CHECK(got.max_area_change == expected.max);
@@ -181,34 +181,34 @@ TEST_CASE("end_call: names the first vertex or triangle that is not finite", "[e
         const auto broken = [&](int bad_vertices, const auto& spoil) {
             Arrays arrays(cloths, Matrix::printed, paper_setting, groups);
             for (std::size_t c = 0; c < 2; ++c)
-                for (const int kind : {APSL_PARTIAL_MAX_CHANGE, APSL_PARTIAL_SQUARED_CHANGE, APSL_PARTIAL_MEASURED,
-                                       APSL_PARTIAL_NOT_FINITE, APSL_PARTIAL_BAD_VERTICES})
+                for (const int kind : {APSLK_PARTIAL_MAX_CHANGE, APSLK_PARTIAL_SQUARED_CHANGE, APSLK_PARTIAL_MEASURED,
+                                       APSLK_PARTIAL_NOT_FINITE, APSLK_PARTIAL_BAD_VERTICES})
                     arrays.write_partial_sum(c, kind, 0.0);
-            arrays.write_partial_sum(1, bad_vertices > 0 ? APSL_PARTIAL_BAD_VERTICES : APSL_PARTIAL_NOT_FINITE, 2.0);
+            arrays.write_partial_sum(1, bad_vertices > 0 ? APSLK_PARTIAL_BAD_VERTICES : APSLK_PARTIAL_NOT_FINITE, 2.0);
             spoil(arrays);
             launch::end_call(arrays, {.work_group_size = group});
-            CHECK(arrays.stats.read()[0].status == APSL_STATUS_OK);
-            CHECK(arrays.stats.read()[0].offender == APSL_OFFENDER_NONE);
+            CHECK(arrays.stats.read()[0].status == APSLK_STATUS_OK);
+            CHECK(arrays.stats.read()[0].offender == APSLK_OFFENDER_NONE);
             CHECK(arrays.states.read()[1].discarded == 1);
             return arrays.stats.read()[1];
         };
         const std::size_t first_vertex = cloths[0].topology->vertex_count();
-        const apsl_stats vertex = broken(2, [&](Arrays& arrays) {
-            std::vector<cl_float4> predicted = arrays.predicted.read();
-            predicted[arrays.vertex_places[first_vertex + 211]].s[1] = static_cast<float>(infinity);
-            predicted[arrays.vertex_places[first_vertex + 44]].s[3] = -1.0f;
-            arrays.predicted.write(predicted);
+        const apslk_stats vertex = broken(2, [&](Arrays& arrays) {
+            std::vector<cl_float4> moved = arrays.moved.read();
+            moved[arrays.vertex_places[first_vertex + 211]].s[1] = static_cast<float>(infinity);
+            moved[arrays.vertex_places[first_vertex + 44]].s[3] = -1.0f;
+            arrays.moved.write(moved);
         });
-        CHECK(vertex.status == APSL_STATUS_DIVERGED);
-        CHECK(vertex.offender == APSL_OFFENDER_VERTEX);
+        CHECK(vertex.status == APSLK_STATUS_DIVERGED);
+        CHECK(vertex.offender == APSLK_OFFENDER_VERTEX);
         CHECK(vertex.offender_index == 44);
-        const apsl_stats triangle = broken(0, [&](Arrays& arrays) {
+        const apslk_stats triangle = broken(0, [&](Arrays& arrays) {
             std::vector<float> rest_areas = arrays.ordered_rest_areas.read();
             rest_areas[arrays.triangle_places[1][299]] = static_cast<float>(std::nan(""));
             rest_areas[arrays.triangle_places[1][131]] = -1.0f;
             arrays.ordered_rest_areas.write(rest_areas);
         });
-        CHECK(triangle.offender == APSL_OFFENDER_TRIANGLE);
+        CHECK(triangle.offender == APSLK_OFFENDER_TRIANGLE);
         CHECK(triangle.offender_index == 131);
     }
 }

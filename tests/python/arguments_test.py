@@ -49,7 +49,7 @@ class Taken(unittest.TestCase):
         arguments = CORNER, 64 * CORNER, [1, 1, 1], [0.5]
         made = limiter(ONE_TRIANGLE, 3)
         for named in [
-            {"enabled": True}, {"enabled": False}, {"sub_steps": 3}, {"max_iterations": 7}, {"adaptive_iterations": 2},
+            {"enabled": True}, {"enabled": False}, {"sub_steps": 3}, {"max_iterations": 7}, {"adaptive_threshold": 2},
             {"time_step": 0.25}, {"time_step": 1}, {"regularization": 2}, {"regularization": 1.5}, {"tolerance": 0.5},
             {"target_area_change": 0.25}, {"first_regularization": 4.0}, {"stepping": "whole_step"},
         ]:
@@ -66,7 +66,7 @@ class Taken(unittest.TestCase):
 
     def test_numpy_scalars_as_options(self):
         options = {"work_group_size": np.uint16(1), "regularization_per_triangle": np.True_,
-                   "kept_pressures": np.int64(2), "bound_period": np.array(3), "matrix": np.str_("consistent")}
+                   "warm_start_sub_steps": np.int64(2), "bound_interval": np.array(3), "matrix": np.str_("consistent")}
         made = limiter(ONE_TRIANGLE, np.uint8(3), **options)
         for name, value in options.items():
             self.assertEqual(made.options[name], value)

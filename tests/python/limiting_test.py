@@ -15,8 +15,8 @@ class OneTriangle(unittest.TestCase):
 
     def limit(self, speed, **parameters):
         velocities = np.array([[0, 0, 0], [speed, 0, 0], [0, 0, 0]], np.float32)
-        plain = {"time_step": TIME_STEP, "first_regularization": 0, "adaptive_iterations": 0, **parameters}
-        return limiter(ONE_TRIANGLE, 3, kept_pressures=0).limit(CORNER, velocities, [0, 2, 0], [0.5], **plain)
+        plain = {"time_step": TIME_STEP, "first_regularization": 0, "adaptive_threshold": 0, **parameters}
+        return limiter(ONE_TRIANGLE, 3, warm_start_sub_steps=0).limit(CORNER, velocities, [0, 2, 0], [0.5], **plain)
 
     def test_without_regularization_one_sub_step_restores_the_area(self):
         velocities, stats = self.limit(32, regularization=1, sub_steps=1)  # to x = 1.5, area 3/4
@@ -110,8 +110,8 @@ class Measures(unittest.TestCase):
         self.assertIn(device(), found)
 
     def test_options_are_resolved(self):
-        made = limiter(ONE_TRIANGLE, 3, execution="many_groups", kept_pressures=2)
-        self.assertEqual((made.options["execution"], made.options["kept_pressures"]), ("many_groups", 2))
+        made = limiter(ONE_TRIANGLE, 3, execution="many_groups", warm_start_sub_steps=2)
+        self.assertEqual((made.options["execution"], made.options["warm_start_sub_steps"]), ("many_groups", 2))
         self.assertGreater(made.options["work_group_size"], 0)
         self.assertGreater(made.scratch_bytes, limiter(ONE_TRIANGLE, 3, execution="many_groups").scratch_bytes)
 

@@ -15,7 +15,7 @@ from cloth import CORNER, ONE_TRIANGLE, limiter
 
 RIGHT = """\
 import apsl, numpy as np
-limiter = apsl.StrainLimiter(np.zeros((1, 3), int), 3, device=0, kept_pressures=2, matrix="printed")
+limiter = apsl.StrainLimiter(np.zeros((1, 3), int), 3, device=0, warm_start_sub_steps=2, matrix="printed")
 velocities, stats = limiter.limit(np.zeros((3, 3)), [[0, 0, 0]] * 3, [1, 1, 1], [1.0], time_step=1 / 60, sub_steps=3)
 velocities.astype(np.float64)
 best: float = min(stats.max_area_change, apsl.area_change(velocities, [[0, 1, 2]], [1.0]).max())

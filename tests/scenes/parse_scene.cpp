@@ -64,12 +64,12 @@ TEST_CASE("a stage that is named without values takes the defaults of the stage"
     CHECK(scene.strain_limiting->parameters.target_area_change == defaults.target_area_change);
     CHECK(scene.strain_limiting->parameters.tolerance == defaults.tolerance);
     CHECK(scene.strain_limiting->parameters.max_iterations == defaults.max_iterations);
-    CHECK(scene.strain_limiting->parameters.adaptive_iterations == defaults.adaptive_iterations);
+    CHECK(scene.strain_limiting->parameters.adaptive_threshold == defaults.adaptive_threshold);
     CHECK(scene.strain_limiting->parameters.first_regularization == defaults.first_regularization);
-    CHECK(scene.strain_limiting->options.kept_pressures == 0);
+    CHECK(scene.strain_limiting->options.warm_start_sub_steps == 0);
     CHECK(scene.strain_limiting->options.execution == Execution::automatic);
     CHECK(scene.strain_limiting->options.solver == Solver::conjugate_gradient);
-    CHECK(scene.strain_limiting->options.bound_period == 1);
+    CHECK(scene.strain_limiting->options.bound_interval == 1);
     CHECK(scene.strain_limiting->regularization.empty());
     CHECK(scene.colliders.size() == 3);
 }
@@ -87,7 +87,7 @@ TEST_CASE("every value is taken from where it stands") {
         "integrator": {"stand_alone": {"bend_stiffness": 50, "damping": 0}},
         "strain_limiting": {"matrix": "printed", "apply": "assembled_csr", "regularization": 2.5, "sub_steps": 3,
                             "target_area_change": 0.01, "tolerance": 0.001, "max_iterations": 9,
-                            "adaptive_iterations": 6, "first_regularization": 1.5, "kept_pressures": 3, "execution": "many_groups"},
+                            "adaptive_threshold": 6, "first_regularization": 1.5, "warm_start_sub_steps": 3, "execution": "many_groups"},
         "colliders": [{"sphere": {"center": [0, 1, 0], "radius": 0.2, "friction": 0.5, "thickness": 0.01}},
                       {"plane": {"point": [0, -1, 0], "normal": [0, 2, 0]}},
                       {"capsule": {"a": [0, 0, 0], "b": [0, 1, 0], "radius": 0.05}}]})");
@@ -137,9 +137,9 @@ TEST_CASE("every value is taken from where it stands") {
     CHECK(limiting.parameters.target_area_change == 0.01f);
     CHECK(limiting.parameters.tolerance == 0.001f);
     CHECK(limiting.parameters.max_iterations == 9);
-    CHECK(limiting.parameters.adaptive_iterations == 6);
+    CHECK(limiting.parameters.adaptive_threshold == 6);
     CHECK(limiting.parameters.first_regularization == 1.5f);
-    CHECK(limiting.options.kept_pressures == 3);
+    CHECK(limiting.options.warm_start_sub_steps == 3);
     CHECK(limiting.options.execution == Execution::many_groups);
 
     const Sphere& sphere = std::get<Sphere>(scene.colliders[0]);
@@ -183,9 +183,9 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "color: unknown key, expected one of mesh, density, pins, masses, start, gravity, time_step, "
          "steps_per_frame, frames, integrator, strain_limiting, colliders"},
         {R"("strain_limiting": {"alpha": 2})",
-         "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, kept_pressures, "
-         "solver, bound_period, regularization, sub_steps, target_area_change, tolerance, max_iterations, "
-         "adaptive_iterations, first_regularization, stepping"},
+         "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, warm_start_sub_steps, "
+         "solver, bound_interval, regularization, sub_steps, target_area_change, tolerance, max_iterations, "
+         "adaptive_threshold, first_regularization, stepping"},
         {R"("strain_limiting": {"regularization": 0.99})",
          "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
         {R"("strain_limiting": {"regularization": [1, 0.5]})",
@@ -196,13 +196,13 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("strain_limiting": {"sub_steps": -1})", "strain_limiting.sub_steps: expected a whole number from 0"},
         {R"("strain_limiting": {"max_iterations": 0})",
          "strain_limiting.max_iterations: expected a whole number from 1"},
-        {R"("strain_limiting": {"adaptive_iterations": -1})",
-         "strain_limiting.adaptive_iterations: expected a whole number from 0"},
+        {R"("strain_limiting": {"adaptive_threshold": -1})",
+         "strain_limiting.adaptive_threshold: expected a whole number from 0"},
         {R"("strain_limiting": {"first_regularization": 0.5})",
          "strain_limiting: first_regularization is 0.5, expected 0 (the same in every sub-step) or a finite number > "
          "1"},
-        {R"("strain_limiting": {"kept_pressures": 65537})",
-         "strain_limiting.kept_pressures: expected a whole number from 0 to 65536, got 65537"},
+        {R"("strain_limiting": {"warm_start_sub_steps": 65537})",
+         "strain_limiting.warm_start_sub_steps: expected a whole number from 0 to 65536, got 65537"},
         {R"("strain_limiting": {"execution": "one_group", "apply": "assembled_csr"})",
          "strain_limiting: execution is one_group, which needs the consistent matrix, matrix-free"},
         {R"("strain_limiting": {"solver": "jacobi"})",
@@ -213,10 +213,10 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "strain_limiting: execution is one_group, which needs solver conjugate_gradient"},
         {R"("strain_limiting": {"solver": "chebyshev", "regularization": [1.2, 1.3]})",
          "strain_limiting: solver is chebyshev, which needs one regularization for all triangles"},
-        {R"("strain_limiting": {"solver": "chebyshev", "kept_pressures": 2})",
-         "strain_limiting: solver is chebyshev, which takes no kept_pressures"},
-        {R"("strain_limiting": {"solver": "chebyshev", "adaptive_iterations": 2})",
-         "strain_limiting: adaptive_iterations is 2, expected 0: Options::solver is chebyshev"},
+        {R"("strain_limiting": {"solver": "chebyshev", "warm_start_sub_steps": 2})",
+         "strain_limiting: solver is chebyshev, which takes no warm_start_sub_steps"},
+        {R"("strain_limiting": {"solver": "chebyshev", "adaptive_threshold": 2})",
+         "strain_limiting: adaptive_threshold is 2, expected 0: Options::solver is chebyshev"},
         {R"("strain_limiting": {"target_area_change": -0.1})",
          "strain_limiting.target_area_change: expected a number ≥ 0, got -0.1"},
         {R"("strain_limiting": {"matrix": "exact"})",

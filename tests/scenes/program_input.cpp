@@ -21,8 +21,8 @@ void check_refused(const std::string& arguments, const std::string& message, con
     CHECK_THAT(run.errors, Catch::Contains(message));
 }
 
-const std::string kGrid = R"({"mesh": {"grid": {"vertices": [5, 5]}}, "frames": 1, )";
-const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string grid_scene = R"({"mesh": {"grid": {"vertices": [5, 5]}}, "frames": 1, )";
+const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 }  // namespace
 
@@ -45,12 +45,12 @@ TEST_CASE("wrong scenes are refused in one line, by run and by validate") {
     check_refused(command + (folder.path() / "missing.json").string(), "missing.json: no such scene file");
     check_refused(command + folder.write("broken.json", "{\n\"mesh\": \n}"),
                   "broken.json: not valid JSON: parse error at line 3");
-    check_refused(command + folder.write("key.json", kGrid + R"("wind": 1})"), "key.json: wind: unknown key");
-    check_refused(command + folder.write("density.json", kGrid + R"("density": -0.2})"),
+    check_refused(command + folder.write("key.json", grid_scene + R"("wind": 1})"), "key.json: wind: unknown key");
+    check_refused(command + folder.write("density.json", grid_scene + R"("density": -0.2})"),
                   "density.json: density: expected a number > 0, got -0.2");
-    check_refused(command + folder.write("alpha.json", kGrid + R"("strain_limiting": {"regularization": 0.9}})"),
+    check_refused(command + folder.write("alpha.json", grid_scene + R"("strain_limiting": {"regularization": 0.9}})"),
                   "alpha.json: strain_limiting.regularization: expected a number ≥ 1, got 0.9");
-    check_refused(command + folder.write("pin.json", kGrid + R"("pins": [{"vertices": [25]}]})"),
+    check_refused(command + folder.write("pin.json", grid_scene + R"("pins": [{"vertices": [25]}]})"),
                   "pin.json: pins[0].vertices[0]: vertex 25 is out of range");
 }
 
@@ -60,11 +60,11 @@ TEST_CASE("wrong meshes are refused in one line") {
     check_refused("run " + scene, "mesh.obj: no such mesh file");
     folder.write("mesh.obj", "");
     check_refused("run " + scene, "mesh.obj: has no vertices");
-    folder.write("mesh.obj", kCorners + "v nan 0 0\nf 1 2 3\n");
+    folder.write("mesh.obj", corners + "v nan 0 0\nf 1 2 3\n");
     check_refused("run " + scene, "mesh.obj:4: expected three finite coordinates");
-    folder.write("mesh.obj", kCorners + "f 1 2 9\n");
+    folder.write("mesh.obj", corners + "f 1 2 9\n");
     check_refused("run " + scene, "mesh.obj:4: vertex 9 is out of range");
-    folder.write("mesh.obj", kCorners + "v 2 0 0\nf 1 2 4\n");
+    folder.write("mesh.obj", corners + "v 2 0 0\nf 1 2 4\n");
     check_refused("run " + scene, "mesh.obj:5: a face without an area");
     const std::string ply = folder.write("nan.ply", ply_text(3, 1, "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"));
     check_refused("run " + scene + " --set mesh.file=" + ply,
@@ -73,7 +73,8 @@ TEST_CASE("wrong meshes are refused in one line") {
 
 TEST_CASE("regularizations that do not fit the mesh are refused in one line") {
     const TemporaryFolder folder;
-    const std::string scene = folder.write("map.json", kGrid + R"("strain_limiting": {"regularization": [1.1, 1.2]}})");
+    const std::string scene =
+        folder.write("map.json", grid_scene + R"("strain_limiting": {"regularization": [1.1, 1.2]}})");
     check_refused("run " + scene + " --backend reference",
                   "strain_limiting.regularization: expected one number or one for each of 32 triangles, got 2");
 }

@@ -31,8 +31,8 @@ std::string bytes_of(const Value& value) {
     return bytes;
 }
 
-const std::string kSquare = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n";
-const std::vector<Triangle> kFanOfFour{{0, 1, 2}, {0, 2, 3}};
+const std::string square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n";
+const std::vector<Triangle> fan_of_four{{0, 1, 2}, {0, 2, 3}};
 
 }  // namespace
 
@@ -108,8 +108,8 @@ TEST_CASE("PLY in binary, with properties that do not matter here") {
     for (std::uint32_t v = 0; v < 4; ++v) contents += bytes_of(v);
     const Mesh mesh = read_mesh(folder.write("quad.PLY", contents));
     CHECK(mesh.positions == positions);
-    CHECK(mesh.triangles == kFanOfFour);
-    CHECK(read_mesh(folder.write("line_end.ply", contents + "\r\n")).triangles == kFanOfFour);
+    CHECK(mesh.triangles == fan_of_four);
+    CHECK(read_mesh(folder.write("line_end.ply", contents + "\r\n")).triangles == fan_of_four);
     const std::string longer = folder.write("longer.ply", contents + contents.substr(contents.size() - 17));
     CHECK(error_of(longer) ==
           longer + ": not a readable PLY mesh: goes on behind what its header counts, for 17 bytes");
@@ -234,13 +234,13 @@ TEST_CASE("OBJ: a backslash at the end of a v or f line joins the next one to it
     CAPTURE(text);
     const Mesh mesh = read_mesh(folder.write("joined.obj", text));
     CHECK(mesh.positions == std::vector<double>{0, 0, 0, 2, 0, 0, 2, 1, 0, 0, 1, 0});
-    CHECK(mesh.triangles == kFanOfFour);
+    CHECK(mesh.triangles == fan_of_four);
 }
 
 TEST_CASE("a byte order mark is no part of the first line, and UTF-16 is refused") {
     const TemporaryFolder folder;
     const std::string mark = "\xef\xbb\xbf";
-    CHECK(read_mesh(folder.write("mark.obj", mark + kSquare + "v 5 5 5\nf 1 2 3 4\n")).triangles == kFanOfFour);
+    CHECK(read_mesh(folder.write("mark.obj", mark + square + "v 5 5 5\nf 1 2 3 4\n")).triangles == fan_of_four);
     CHECK(read_mesh(folder.write("mark.ply", mark + ply_text(3, 1, "0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n"))).triangles ==
           std::vector<Triangle>{{0, 1, 2}});
     const std::string wide = folder.write("wide.obj", std::string("\xff\xfev\0 \0", 6));
@@ -252,13 +252,13 @@ TEST_CASE("vertices that a face names twice: closed polygons and spikes are read
     const std::string face =
         GENERATE("f 1 2 3 4 1\n", "f 1 1 2 3 3 3 4\n", "f 2 3 4 1 4 1 2 1\n", "f 4 1 2 3 4 3 4 4\n", "f 2 1 2 3 4 1\n");
     CAPTURE(face);
-    const Mesh mesh = read_mesh(folder.write("closed.obj", kSquare + face));
+    const Mesh mesh = read_mesh(folder.write("closed.obj", square + face));
     CHECK(mesh.triangles.size() == 2);
     CHECK(mesh.warnings.empty());
 
-    const std::string file = folder.write("twice.obj", kSquare + "f 1 2 3\nf 1 3 4\nf 4 4 1\nf 1 2 3 2\nf -1 -2 -1\n");
+    const std::string file = folder.write("twice.obj", square + "f 1 2 3\nf 1 3 4\nf 4 4 1\nf 1 2 3 2\nf -1 -2 -1\n");
     const Mesh flawed = read_mesh(file);
-    CHECK(flawed.triangles == kFanOfFour);
+    CHECK(flawed.triangles == fan_of_four);
     CHECK(flawed.warnings ==
           std::vector<std::string>{file + ": faces that enclose nothing, for a vertex comes twice: 3, "
                                           "the first in line 7, 4 4 1; they are left out"});
@@ -272,18 +272,18 @@ TEST_CASE("OBJ: lines of another format are warned of, those that OBJ has are no
     const TemporaryFolder folder;
     const std::string face = "f 1 2 3 4\n";
     const std::string known = "o a\ng b\ns off\nusemtl c\nvp 0 0\nl 1 2\np 1\nlod 1\n\n";
-    CHECK(read_mesh(folder.write("known.obj", kSquare + known + face)).warnings.empty());
+    CHECK(read_mesh(folder.write("known.obj", square + known + face)).warnings.empty());
     const std::string file =
-        folder.write("unknown.obj", kSquare + face + "F 1 2 3\nfoo bar\n" + std::string("\0 f\n", 4));
+        folder.write("unknown.obj", square + face + "F 1 2 3\nfoo bar\n" + std::string("\0 f\n", 4));
     const Mesh mesh = read_mesh(file);
-    CHECK(mesh.triangles == kFanOfFour);
+    CHECK(mesh.triangles == fan_of_four);
     CHECK(mesh.warnings == std::vector<std::string>{file + ": lines that OBJ does not have: 3, the first in line 6, "
                                                            "\"F 1 2 3\"; they are left out"});
 }
 
 TEST_CASE("faces that come twice, on either side, are warned of") {
     const TemporaryFolder folder;
-    const std::string file = folder.write("twosided.obj", kSquare + "f 1 2 3 4\nf 4 1 3\nf 3 2 1\nf 1 2 4\n");
+    const std::string file = folder.write("twosided.obj", square + "f 1 2 3 4\nf 4 1 3\nf 3 2 1\nf 1 2 4\n");
     CHECK(read_mesh(file).triangles.size() == 5);
     CHECK(read_mesh(file).warnings ==
           std::vector<std::string>{file + ": faces that come twice: 2, the first in line 6, 4 1 3; each weighs and "

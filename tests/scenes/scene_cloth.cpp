@@ -104,9 +104,8 @@ TEST_CASE("a cloth starts scaled about its middle, or shaken, and its rest stays
 
     const ClothState shaken = start(R"({"random": 0.25})");
     double farthest = 0.0;
-    for (std::size_t i = 0; i < 45; ++i) {
+    for (std::size_t i = 0; i < 45; ++i)
         farthest = std::max(farthest, std::abs(shaken.positions[i] - shaken.rest_positions[i]));
-    }
     CHECK(farthest <= 0.25);
     CHECK(farthest > 0.2);
     CHECK(shaken.positions == start(R"({"random": 0.25})").positions);

@@ -130,7 +130,7 @@ TEST_CASE("settings change nothing else in a scene") {
 
     const auto plain = nlohmann::ordered_json::parse(R"({"mesh": {"grid": {}}})");
     LimiterSettings rising;
-    rising.limiting.options.kept_pressures = 4;
+    rising.limiting.options.warm_start_sub_steps = 4;
     rising.limiting.options.solver = Solver::chebyshev;
     rising.limiting.parameters.sub_steps = 4;
     rising.limiting.parameters.first_regularization = 1.01f;
@@ -139,8 +139,8 @@ TEST_CASE("settings change nothing else in a scene") {
     CHECK(risen["strain_limiting"]["first_regularization"] == 1.01);
     CHECK(risen["strain_limiting"]["stepping"] == "small_steps");
     CHECK(risen["strain_limiting"]["solver"] == "chebyshev");
-    CHECK(risen["strain_limiting"]["kept_pressures"] == 4);
-    rising.limiting.options.kept_pressures = 0;  // with it the scene would be refused
+    CHECK(risen["strain_limiting"]["warm_start_sub_steps"] == 4);
+    rising.limiting.options.warm_start_sub_steps = 0;  // with it the scene would be refused
     CHECK(settings_of(with_settings(plain, settings_of(plain), rising)) == rising);
 }
 

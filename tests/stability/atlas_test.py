@@ -86,10 +86,10 @@ class Atlas(unittest.TestCase):
             self.assertLessEqual((DATA / f"{name}.png").stat().st_size, 300_000)
 
     def run_again(self, chosen, method, x, y, folder):
-        knobs = next(m["knobs"] for m in chosen.methods if m["name"] == method)
+        parameters = next(m["parameters"] for m in chosen.methods if m["name"] == method)
         if chosen.alpha:
-            knobs = {**knobs, "strain_limiting.regularization": x}
-        methods = maps.WITHOUT + [{"name": method, "knobs": knobs}]
+            parameters = {**parameters, "strain_limiting.regularization": x}
+        methods = maps.WITHOUT + [{"name": method, "parameters": parameters}]
         scene = chosen.scene(x, y)
         without, again = measure.run_column(PROGRAM, folder, [("point", scene)], methods, 300.0)["runs"]
         return outcome.outcome(again, without, maps.driven(scene))

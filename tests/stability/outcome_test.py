@@ -193,7 +193,7 @@ class Summary(unittest.TestCase):
                          "| [Made up](stability/made_up.png) | 4 | 1 | 1 | 1 | 0 | 2 (PBD) | 1 | 2 | 0 | 2 (2.5) |")
 
     def test_points(self):
-        self.assertEqual(list(summary.held_by_rivals_alone(made_up_map())),
+        self.assertEqual(list(summary.held_by_baselines_alone(made_up_map())),
                          ["stiffness 1 N/m, stiffness 2 N/m: ours 20 %, XPBD 4 %, held by 2"])
         self.assertEqual(list(summary.worse_than_none(made_up_map())),
                          ["stiffness 2 N/m, stiffness 1 N/m: ours 75 %, no limiter 70 %",

@@ -17,9 +17,9 @@ class Options(TypedDict, total=False):
     execution: Literal["automatic", "many_groups", "one_group"]
     work_group_size: int  # a power of two; 0 takes what suits the device
     regularization_per_triangle: bool  # `regularization` is then an array [T] in every call
-    kept_pressures: int  # sub-steps whose pressures the next call's solves start from
+    warm_start_sub_steps: int  # sub-steps whose pressures the next call's solves start from
     solver: Literal["conjugate_gradient", "chebyshev"]  # chebyshev: a fixed polynomial with the reach of α
-    bound_period: int  # by Chebyshev, ≥ 1: sub-steps from one bound of the matrix to the next
+    bound_interval: int  # by Chebyshev, ≥ 1: sub-steps from one bound of the matrix to the next
 
 
 class Parameters(TypedDict, total=False):
@@ -31,7 +31,7 @@ class Parameters(TypedDict, total=False):
     target_area_change: float  # ≥ 0, no further sub-step once every triangle is at or below it
     tolerance: float  # in [0, 1), of a solve's residual
     max_iterations: int  # ≥ 1, CG iterations of a solve
-    adaptive_iterations: int  # 0: α stays as given; else more iterations than this raise it
+    adaptive_threshold: int  # 0: α stays as given; else more iterations than this raise it
     first_regularization: float  # 0: one α for all sub-steps; else > 1, that of the first
     stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small steps from 20 sub-steps up
     enabled: bool  # False: the velocities come back as they were, with status "off"
@@ -42,8 +42,8 @@ class Stats:
     """What one call did."""
 
     sub_steps: int  # solves done
-    cg_iterations: int  # over all of them
-    residual: float  # greatest relative residual at the end of a solve
+    iterations: int  # over all solves: of CG, or products with the matrix by Chebyshev
+    residual: float  # greatest relative residual at the end of a solve; 0 by Chebyshev
     max_area_change: float  # max |A − A⁰| / A⁰ of the state that stands
     rms_area_change: float  # weighted with A⁰
     initial_max_area_change: float  # both at x + Δt v

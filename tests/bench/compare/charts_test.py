@@ -23,10 +23,10 @@ import compare_summary  # noqa: E402
 PAPER = {"strain_limiting.sub_steps": 10, "strain_limiting.regularization": 1.2, "strain_limiting.tolerance": 0.1}
 
 
-def made_up_run(scene, method, milliseconds, mean, knobs=None, triangles=8192, status="ok"):
+def made_up_run(scene, method, milliseconds, mean, parameters=None, triangles=8192, status="ok"):
     return {"scene": scene, "method": method, "title": method.replace("_", " "),
-            "knobs": {"steps_per_frame": 1, **(knobs or {"iterations": 5})},
-            "status": status, "triangles": triangles, "frames": 2, "solves": 20, "cg_iterations_per_solve": 3.5,
+            "parameters": {"steps_per_frame": 1, **(parameters or {"iterations": 5})},
+            "status": status, "triangles": triangles, "frames": 2, "solves": 20, "iterations_per_solve": 3.5,
             "limiter_seconds_per_frame": {"median": 1e-3 * milliseconds},
             "max_area_change": 2.0 * mean, "mean_max_area_change": mean, "rms_area_change": 0.3 * mean,
             "mean_displacement": [0.0, -mean, 0.0], "frame_max_area_change": [mean, 2.0 * mean, None],
@@ -36,8 +36,8 @@ def made_up_run(scene, method, milliseconds, mean, knobs=None, triangles=8192, s
 def made_up_results(scene="curtain", triangles=8192):
     runs = [made_up_run(scene, "none", 0.0, 0.6, {"steps_per_frame": 1}, triangles)]
     for count in (5, 10, 20):
-        knobs = {**PAPER, "strain_limiting.sub_steps": count}
-        runs.append(made_up_run(scene, "apsl", 0.2 * count, 0.4 / count, knobs, triangles))
+        parameters = {**PAPER, "strain_limiting.sub_steps": count}
+        runs.append(made_up_run(scene, "apsl", 0.2 * count, 0.4 / count, parameters, triangles))
         runs.append(made_up_run(scene, "apsl_rising", 0.2 * count, 0.1 / count,
                                 {"strain_limiting.sub_steps": count, "steps_per_frame": 1}, triangles))
     for count in (5, 20, 80):
@@ -106,7 +106,7 @@ class Charts(unittest.TestCase):
                 self.assertRegex(complained, r"\Aerror: [^\n]+\n\Z")
                 self.assertFalse((self.folder / "no.png").exists())
 
-    def test_summary_compares_with_the_paper_and_the_best_rival(self):
+    def test_summary_compares_with_the_paper_and_the_best_baseline(self):
         self.write(made_up_results(), "curtain_8k.json")
         self.write(made_up_results(triangles=32768), "curtain_32k.json")
         self.write(made_up_results(), "refinement.json")
@@ -119,10 +119,10 @@ class Charts(unittest.TestCase):
         # 4 % takes PBD edges 10 ms, ours at most 1 ms.
         runs = compare_results.read_results(self.folder / "curtain_8k.json")["runs"]
         held = [run for run in runs if run["method"] != "none" and compare_results.held(run)]
-        level, ours, rival, title = compare_summary.against_rivals(held)[3]
+        level, ours, baseline, title = compare_summary.against_baselines(held)[3]
         self.assertEqual((level, title), (0.05, "pbd edges"))
         self.assertAlmostEqual(ours, 1.0)
-        self.assertAlmostEqual(rival, 2.5 * 4.0 ** (math.log(0.16 / 0.05) / math.log(4.0)))
+        self.assertAlmostEqual(baseline, 2.5 * 4.0 ** (math.log(0.16 / 0.05) / math.log(4.0)))
 
 
 if __name__ == "__main__":

@@ -53,7 +53,7 @@ class Compare(unittest.TestCase):
         self.compare(self.flag, "--frames", 2, "--set", "mesh.grid.vertices=[4,4]", "--set", "pins.0.vertices=[0,3]",
                      "--out", self.out)
         runs = self.results()["runs"]
-        keys = [json.dumps([run["method"], run["knobs"]], sort_keys=True) for run in runs]
+        keys = [json.dumps([run["method"], run["parameters"]], sort_keys=True) for run in runs]
         self.assertEqual(len(keys), len(set(keys)))
         ours = {"none", "springs", "apsl", "apsl_printed", "apsl_adaptive", "apsl_direct", "apsl_small_steps", "apsl_chebyshev",
                 "apsl_several_steps"}
@@ -101,7 +101,7 @@ class Compare(unittest.TestCase):
         done = self.compare(*arguments, "--rounds", 3)
         self.assertIn(f"{3 * len(first)} runs, {len(first)} of them done before", done.stdout)
         for before, after in zip(first, self.results()["runs"], strict=True):
-            self.assertEqual(before["knobs"], after["knobs"])
+            self.assertEqual(before["parameters"], after["parameters"])
             self.assertEqual(before["max_area_change"], after["max_area_change"])
             self.assertEqual(len(after["rounds"]), 3)
             self.assertEqual(after["rounds"][0], {**before["limiter_seconds_per_frame"], "commit": before["commit"]})
@@ -145,7 +145,7 @@ class Compare(unittest.TestCase):
     def test_deviation_is_measured_from_the_converged_solution(self):
         self.write("fall.json", FALL)
         study = self.write("study.json", {"scenes": [{"file": "fall.json"}, {"file": "flag.json"}],
-                                          "methods": ["none", {"name": "apsl", "knobs": {}}],
+                                          "methods": ["none", {"name": "apsl", "parameters": {}}],
                                           "deviation": {"frames": [0, 5], "step_factor": 1}})
         self.compare("--study", study, "--out", self.out)
         for run in self.results()["runs"]:
@@ -171,7 +171,7 @@ class Compare(unittest.TestCase):
 
     def test_device_time_is_asked_for(self):
         study = self.write("study.json", {"scenes": [{"file": "flag.json"}], "methods": [
-            "none", {"name": "apsl", "knobs": {"strain_limiting.sub_steps": 3}}]})
+            "none", {"name": "apsl", "parameters": {"strain_limiting.sub_steps": 3}}]})
         self.compare("--study", study, "--out", self.out)
         self.assertEqual([run["device_seconds_per_frame"] for run in self.results()["runs"]], [None, None])
         self.compare("--study", study, "--profile", "--out", self.out)
@@ -181,7 +181,7 @@ class Compare(unittest.TestCase):
 
     def test_the_study_schema_knows_what_the_program_takes(self):
         full = {"scenes": [{"file": "flag.json", "name": "a", "set": {"density": 0.3}}],
-                "methods": ["none", {"name": "springs", "knobs": {"stretch_stiffness_factor": [1, 2]}}],
+                "methods": ["none", {"name": "springs", "parameters": {"stretch_stiffness_factor": [1, 2]}}],
                 "deviation": {"frames": [1], "step_factor": 1, "sub_steps": 5, "regularization": 1.1,
                               "tolerance": 0.01, "target_area_change": 0.01}, "run_seconds": 60, "rounds": 2}
         jsonschema.validate(full, STUDY_SCHEMA)

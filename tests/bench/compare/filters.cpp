@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "compare/baseline_filter.hpp"
 #include "compare/direct_filter.hpp"
-#include "compare/rival_filter.hpp"
 #include "pipeline/measures.hpp"
 #include "run/reference_filter.hpp"
 
@@ -31,23 +31,23 @@ double greatest_area_change(const scenes::ClothState& cloth, double time_step) {
 
 }  // namespace
 
-TEST_CASE("a rival's displacement goes into the velocities of free vertices") {
-    const methods::MethodInfo& rival = methods::all_methods()[0];
+TEST_CASE("a baseline's displacement goes into the velocities of free vertices") {
+    const methods::MethodInfo& baseline = methods::all_methods()[0];
     scenes::ClothState cloth = square();
     const scenes::ClothState before = cloth;
-    const scenes::CustomFilter filter = make_rival_filter(rival, {}, cloth, 0.1);
-    CHECK(filter.name == rival.name);
+    const scenes::CustomFilter filter = make_baseline_filter(baseline, {}, cloth, 0.1);
+    CHECK(filter.name == baseline.name);
     CHECK(filter.filter(cloth).status == Status::ok);
     CHECK(greatest_area_change(cloth, 0.1) < greatest_area_change(before, 0.1));
     CHECK(cloth.positions == before.positions);
     CHECK(cloth.velocities[0] == 0.0);
 }
 
-TEST_CASE("a rival is left out where numbers are not finite") {
+TEST_CASE("a baseline is left out where numbers are not finite") {
     scenes::ClothState cloth = square();
     cloth.velocities[3] = std::numeric_limits<double>::infinity();
     const scenes::ClothState before = cloth;
-    const scenes::CustomFilter filter = make_rival_filter(methods::all_methods()[0], {}, cloth, 0.1);
+    const scenes::CustomFilter filter = make_baseline_filter(methods::all_methods()[0], {}, cloth, 0.1);
     CHECK(filter.filter(cloth).status == Status::diverged);
     CHECK(cloth.velocities == before.velocities);
 }
@@ -60,9 +60,8 @@ TEST_CASE("direct solves end where tight Conjugate Gradient ends") {
     CHECK(make_direct_filter(direct, settings).filter(direct).sub_steps == 4);
     scenes::ReferenceFilter(iterated, settings).filter(iterated);
     CHECK(direct.velocities != square().velocities);
-    for (std::size_t i = 0; i < direct.velocities.size(); ++i) {
+    for (std::size_t i = 0; i < direct.velocities.size(); ++i)
         CHECK(direct.velocities[i] == Approx(iterated.velocities[i]).margin(1e-9));
-    }
 }
 
 TEST_CASE("direct solves stop at the target and say what is not finite") {

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Of each chart's data in docs/accuracy one small point of ours and one of a rival, run again: the same error figures.
+"""Of each chart's data in docs/accuracy one small point of ours and one of a baseline, run again: the same error figures.
 
 On the processor and OpenCL device that the data names they must be equal to rounding of what is printed. On another one
 floats round differently and the motion is chaotic, so there each figure is only a fair sample of the same motion."""
@@ -32,7 +32,7 @@ def run_again(results, run, folder):
     scene = next(scene for scene in results["scenes"] if scene["name"] == run["scene"])
     (folder / "scene.json").write_text(json.dumps(scene["document"]))
     study = {"scenes": [{"file": "scene.json", "name": run["scene"]}],
-             "methods": [{"name": run["method"], "knobs": run["knobs"]}]}
+             "methods": [{"name": run["method"], "parameters": run["parameters"]}]}
     (folder / "study.json").write_text(json.dumps(study))
     out = folder / "again.json"
     subprocess.run([PROGRAM, "compare", "--study", str(folder / "study.json"), "--out", str(out)], check=True,
@@ -55,7 +55,7 @@ class Points(unittest.TestCase):
                 run = cheapest(results["runs"], ours)
                 with self.subTest(data=path.name, method=run["method"]), tempfile.TemporaryDirectory() as folder:
                     again, same = run_again(results, run, Path(folder))
-                    self.assertEqual(again["knobs"], run["knobs"])
+                    self.assertEqual(again["parameters"], run["parameters"])
                     self.assertEqual(again["status"], run["status"])
                     for figure in FIGURES:
                         self.assertLessEqual(abs(again[figure] - run[figure]),

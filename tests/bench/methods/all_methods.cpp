@@ -22,9 +22,9 @@ using methods::MethodInfo;
 
 namespace {
 
-std::string message_of(std::string_view name, const Cloth& cloth, std::vector<methods::Knob> knobs) {
+std::string message_of(std::string_view name, const Cloth& cloth, std::vector<methods::Parameter> parameters) {
     try {
-        make_method(name, cloth, knobs);
+        make_method(name, cloth, parameters);
     } catch (const Error& error) {
         return error.what();
     }
@@ -33,7 +33,7 @@ std::string message_of(std::string_view name, const Cloth& cloth, std::vector<me
 
 }  // namespace
 
-TEST_CASE("The table names every method once, with knobs whose values it takes", "[methods]") {
+TEST_CASE("The table names every method once, with parameters whose values it takes", "[methods]") {
     std::set<std::string> names;
     const Cloth cloth = hanging_grid(3);
     for (const MethodInfo& info : all_methods()) {
@@ -42,19 +42,19 @@ TEST_CASE("The table names every method once, with knobs whose values it takes",
         CHECK_FALSE(info.title.empty());
         CHECK_FALSE(info.citation.empty());
         CHECK(make_method(info.name, cloth, {}) != nullptr);
-        for (const methods::KnobInfo& knob : info.knobs) {
-            INFO(knob.name);
-            CHECK_FALSE(knob.sweep.empty());
-            CHECK(knob.standard >= knob.least);
-            for (const double value : knob.sweep) {
-                const methods::Knob chosen{knob.name, value};
+        for (const methods::ParameterInfo& parameter : info.parameters) {
+            INFO(parameter.name);
+            CHECK_FALSE(parameter.sweep.empty());
+            CHECK(parameter.standard >= parameter.least);
+            for (const double value : parameter.sweep) {
+                const methods::Parameter chosen{parameter.name, value};
                 CHECK(make_method(info.name, cloth, {&chosen, 1}) != nullptr);
             }
         }
     }
 }
 
-TEST_CASE("Mistakes in name, knobs and cloth are named", "[methods]") {
+TEST_CASE("Mistakes in name, parameters and cloth are named", "[methods]") {
     using Catch::Contains;
     Cloth cloth = hanging_grid(3);
     CHECK_THAT(message_of("pdb_edges", cloth, {}), Contains("pdb_edges") && Contains("pbd_edges"));

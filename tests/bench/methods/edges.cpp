@@ -48,9 +48,9 @@ TEST_CASE("edge limits: an edge beyond a bound comes back to it, one within stay
     const std::vector<Eigen::Vector3f> shorter{{0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, {1.4f, 2.1f, 0.0f}};
     for (const char* const method : {"edge_limits_gauss_seidel", "edge_limits_jacobi"}) {
         INFO(method);
-        const std::vector<methods::Knob> knobs{{"iterations", 1}, {"limit", 0.1}};
-        CHECK((projected(cloth, method, longer, knobs)[1] - Eigen::Vector3f(2.2f, 0.0f, 0.0f)).norm() < 1e-6f);
-        CHECK((projected(cloth, method, shorter, knobs)[1] - Eigen::Vector3f(1.8f, 0.0f, 0.0f)).norm() < 1e-6f);
+        const std::vector<methods::Parameter> parameters{{"iterations", 1}, {"limit", 0.1}};
+        CHECK((projected(cloth, method, longer, parameters)[1] - Eigen::Vector3f(2.2f, 0.0f, 0.0f)).norm() < 1e-6f);
+        CHECK((projected(cloth, method, shorter, parameters)[1] - Eigen::Vector3f(1.8f, 0.0f, 0.0f)).norm() < 1e-6f);
     }
 }
 

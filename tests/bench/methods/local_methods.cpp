@@ -45,8 +45,8 @@ TEST_CASE("A compliant method keeps no multiplier from one call to the next", "[
     const auto start = stretched(cloth, 1.2f);
     for (const char* const name : {"xpbd_edges", "xpbd_area"}) {
         INFO(name);
-        const std::vector<methods::Knob> knobs{{"iterations", 3}, {"compliance", 0.01}};
-        const auto method = methods::make_method(name, cloth, knobs);
+        const std::vector<methods::Parameter> parameters{{"iterations", 3}, {"compliance", 0.01}};
+        const auto method = methods::make_method(name, cloth, parameters);
         auto first = start;
         auto second = start;
         method->project(first);

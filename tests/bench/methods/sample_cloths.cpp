@@ -43,8 +43,8 @@ Positions stretched(const Cloth& cloth, float factor) {
 }
 
 Positions projected(const Cloth& cloth, const std::string& method, Positions positions,
-                    std::vector<methods::Knob> knobs) {
-    methods::make_method(method, cloth, knobs)->project(positions);
+                    std::vector<methods::Parameter> parameters) {
+    methods::make_method(method, cloth, parameters)->project(positions);
     return positions;
 }
 

@@ -23,7 +23,8 @@ std::vector<Eigen::Vector3f> stretched(const methods::Cloth& cloth, float factor
 
 /// What a method makes of these positions.
 std::vector<Eigen::Vector3f> projected(const methods::Cloth& cloth, const std::string& method,
-                                       std::vector<Eigen::Vector3f> positions, std::vector<methods::Knob> knobs = {});
+                                       std::vector<Eigen::Vector3f> positions,
+                                       std::vector<methods::Parameter> parameters = {});
 
 float area(const Triangle& triangle, const std::vector<Eigen::Vector3f>& positions);
 /// Greatest |A − A⁰| / A⁰.

@@ -67,7 +67,7 @@ int main(void) {
     cl_command_queue queue = clCreateCommandQueueWithProperties(context, device, NULL, &status);
     require(status == CL_SUCCESS, "clCreateCommandQueueWithProperties");
 
-    apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+    apsl_parameters parameters = apsl_default_parameters();
     make_cloth(parameters.time_step);
     const double before = max_area_change(parameters.time_step);
     void* const arrays[4] = {positions, velocities, inverse_masses, rest_areas};
@@ -84,7 +84,7 @@ int main(void) {
     const apsl_topology* const cloths[1] = {topology};
     require(apsl_limiter_create(context, device, cloths, 1, NULL, &limiter) == APSL_SUCCESS, "apsl_limiter_create");
     apsl_topology_destroy(topology);
-    apsl_limiter_buffers buffers;
+    apsl_buffers buffers;
     memset(&buffers, 0, sizeof buffers);
     buffers.positions.buffer = memory[0];
     buffers.velocities.buffer = memory[1];

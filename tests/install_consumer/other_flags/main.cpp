@@ -47,24 +47,24 @@ int main() {
         return apsl_buffer_view{clCreateBuffer(context, CL_MEM_COPY_HOST_PTR, floats * sizeof(float), numbers, nullptr),
                                 0};
     };
-    const apsl_limiter_buffers buffers{upload(9), upload(9), upload(3), upload(1), {nullptr, 0}};
-    const auto enqueue = [&](const apsl_limiter_parameters& parameters) {
+    const apsl_buffers buffers{upload(9), upload(9), upload(3), upload(1), {nullptr, 0}};
+    const auto enqueue = [&](const apsl_parameters& parameters) {
         return apsl_limiter_enqueue(limiter, queue, &buffers, &parameters, 1, 0, nullptr, nullptr);
     };
-    const std::pair<const char*, float apsl_limiter_parameters::*> fields[] = {
-        {"time_step", &apsl_limiter_parameters::time_step},
-        {"regularization", &apsl_limiter_parameters::regularization},
-        {"target_area_change", &apsl_limiter_parameters::target_area_change},
-        {"tolerance", &apsl_limiter_parameters::tolerance},
-        {"first_regularization", &apsl_limiter_parameters::first_regularization}};
+    const std::pair<const char*, float apsl_parameters::*> fields[] = {
+        {"time_step", &apsl_parameters::time_step},
+        {"regularization", &apsl_parameters::regularization},
+        {"target_area_change", &apsl_parameters::target_area_change},
+        {"tolerance", &apsl_parameters::tolerance},
+        {"first_regularization", &apsl_parameters::first_regularization}};
     for (const auto& [name, field] : fields)
         for (const float number : {infinity, not_a_number}) {
-            apsl_limiter_parameters parameters = apsl_limiter_default_parameters();
+            apsl_parameters parameters = apsl_default_parameters();
             parameters.*field = number;
             require(enqueue(parameters) == APSL_ERROR_INVALID_ARGUMENT, name);
             require(std::string_view(apsl_last_error()).find(name) == 0, name);
         }
-    require(enqueue(apsl_limiter_default_parameters()) == APSL_SUCCESS, "the defaults are refused");
+    require(enqueue(apsl_default_parameters()) == APSL_SUCCESS, "the defaults are refused");
     require(clFinish(queue) == CL_SUCCESS, "clFinish");
     apsl_limiter_destroy(limiter);
     apsl_topology_destroy(topology);

@@ -41,6 +41,6 @@ def report(changes, status="ok", triangles=8192, filter_seconds=0.002):
             "frames": [{"frame": place, "max_area_change": change} for place, change in enumerate(changes)],
             "summary": {"max_area_change": max(finite, default=None),
                         "mean_max_area_change": sum(finite) / len(finite) if finite else None,
-                        "rms_area_change": 0.001, "cg_iterations_per_solve": 3.4,
+                        "rms_area_change": 0.001, "iterations_per_solve": 3.4,
                         "filter_seconds_per_frame": filter_seconds, "step_seconds_per_frame": 2 * filter_seconds,
                         "status": status}}

@@ -15,9 +15,7 @@ using namespace apsl::scenes;
 TEST_CASE("cloth: one triangle of 1 m² puts a third of its mass on each vertex") {
     const ClothState cloth = sample_cloth(test::right_triangle(), {1});
     CHECK(cloth.rest_areas == std::vector<double>{1.0});
-    for (int vertex = 0; vertex < 3; ++vertex) {
-        CHECK(cloth.masses[vertex] == Approx(0.2 / 3.0).epsilon(1e-15));
-    }
+    for (int vertex = 0; vertex < 3; ++vertex) CHECK(cloth.masses[vertex] == Approx(0.2 / 3.0).epsilon(1e-15));
     CHECK(cloth.inverse_masses[0] == Approx(15.0).epsilon(1e-15));
     CHECK(cloth.inverse_masses[1] == 0.0);
     CHECK(cloth.velocities == std::vector<double>(9, 0.0));

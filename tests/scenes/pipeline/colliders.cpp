@@ -65,9 +65,8 @@ TEST_CASE("colliders: a cloth dropped onto each of them never gets inside") {
         integrator.advance_velocities(cloth, {0.0, -9.81, 0.0}, time_step);
         touched += resolve_collisions(cloth, std::array{collider}, time_step);
         advance_positions(cloth, time_step);
-        for (std::size_t vertex = 0; vertex < cloth.masses.size(); ++vertex) {
+        for (std::size_t vertex = 0; vertex < cloth.masses.size(); ++vertex)
             deepest = std::min(deepest, distance(collider, place(cloth, vertex)) - contact.thickness);
-        }
     }
     CHECK(touched > 100);
     CHECK(deepest > -1e-9);
@@ -85,11 +84,8 @@ TEST_CASE("colliders: a corner between two planes and a sphere on the floor hold
         resolve_collisions(cloth, colliders, time_step);
         advance_positions(cloth, time_step);
     }
-    for (std::size_t vertex = 0; vertex < cloth.masses.size(); ++vertex) {
-        for (const Collider& collider : colliders) {
-            CHECK(distance(collider, place(cloth, vertex)) > -1e-6);
-        }
-    }
+    for (std::size_t vertex = 0; vertex < cloth.masses.size(); ++vertex)
+        for (const Collider& collider : colliders) CHECK(distance(collider, place(cloth, vertex)) > -1e-6);
 }
 
 TEST_CASE("colliders: a place at the very center or axis is pushed out, not made NaN") {

@@ -64,11 +64,7 @@ TEST_CASE("friction: on a slope it sticks inside the cone of friction and slides
 
 TEST_CASE("friction: what sticks stops dead and is not turned round") {
     ClothState cloth = sheet_on_floor();
-    for (std::size_t vertex = 0; vertex < 9; ++vertex) {
-        cloth.velocities[3 * vertex] = 0.1;
-    }
+    for (std::size_t vertex = 0; vertex < 9; ++vertex) cloth.velocities[3 * vertex] = 0.1;
     advance(cloth, Plane{.point = {}, .normal = {0, 1, 0}, .contact = {.friction = 10.0}}, {0.0, -9.81, 0.0}, 1);
-    for (std::size_t vertex = 0; vertex < 9; ++vertex) {
-        CHECK(cloth.velocities[3 * vertex] == Approx(0.0).margin(1e-15));
-    }
+    for (std::size_t vertex = 0; vertex < 9; ++vertex) CHECK(cloth.velocities[3 * vertex] == Approx(0.0).margin(1e-15));
 }

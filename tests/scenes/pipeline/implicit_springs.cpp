@@ -39,12 +39,9 @@ TEST_CASE("implicit springs: without springs a cloth falls with g t, damped as b
         advance_positions(cloth, time_step);
         expected = (expected - 9.81 * time_step) / (1.0 + damping * time_step);
     }
-    for (std::size_t i = 0; i < cloth.velocities.size(); ++i) {
+    for (std::size_t i = 0; i < cloth.velocities.size(); ++i)
         CHECK(cloth.velocities[i] == Approx(i % 3 == 1 ? expected : 0.0).margin(1e-12));
-    }
-    if (damping == 0.0) {
-        CHECK(cloth.velocities[1] == Approx(-9.81).epsilon(1e-12));
-    }
+    if (damping == 0.0) CHECK(cloth.velocities[1] == Approx(-9.81).epsilon(1e-12));
 }
 
 TEST_CASE("implicit springs: a weight on one spring comes to hang m g / k below its rest length") {
@@ -96,9 +93,8 @@ TEST_CASE("implicit springs: springs do not change momentum") {
         integrator.advance_velocities(cloth, no_gravity, time_step);
         ClothState change = cloth;
         change.velocities = moved(cloth.velocities, -1.0, velocities);
-        for (std::size_t i = 0; i < velocities.size(); ++i) {
+        for (std::size_t i = 0; i < velocities.size(); ++i)
             scale += cloth.masses[i / 3] * std::abs(change.velocities[i]);
-        }
         advance_positions(cloth, time_step);
     }
     // To the solver's tolerance, 1e-3 of what the springs pass about.
@@ -126,11 +122,9 @@ TEST_CASE("implicit springs: pinned vertices do not move by one bit, and two run
             CHECK(integrator.advance_velocities(cloth, gravity, time_step).converged);
             advance_positions(cloth, time_step);
         }
-        for (const std::size_t vertex : {0, 16}) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const std::size_t vertex : {0, 16})
+            for (std::size_t axis = 0; axis < 3; ++axis)
                 CHECK(cloth.positions[3 * vertex + axis] == mesh.positions[3 * vertex + axis]);
-            }
-        }
         CHECK(cloth.positions[3 * 280 + 1] < -0.3);  // the free edge hangs
         end = cloth.positions;
     }
@@ -148,9 +142,7 @@ TEST_CASE("implicit springs: springs of no length give no NaN") {
         CHECK(integrator.advance_velocities(cloth, gravity, time_step).converged);
         advance_positions(cloth, time_step);
     }
-    for (const double position : cloth.positions) {
-        CHECK(std::isfinite(position));
-    }
+    for (const double position : cloth.positions) CHECK(std::isfinite(position));
     CHECK(cloth.positions[4] < 1.0);
 }
 

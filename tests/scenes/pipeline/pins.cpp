@@ -71,12 +71,8 @@ TEST_CASE("pins: carried ones start and stop when told, and then keep every bit"
         const double moving = std::clamp(time + time_step - 0.5, 0.0, 0.5);
         CHECK(cloth.positions[0] == Approx(-1.0 + 0.3 * moving).margin(1e-12));
         CHECK(cloth.positions[2] == Approx(-0.5 - 0.6 * moving).margin(1e-12));
-        if (time + time_step < 0.5 - 1e-9) {
-            CHECK(cloth.positions == cloth.rest_positions);
-        }
-        if (step == 65) {
-            stopped = cloth.positions;
-        }
+        if (time + time_step < 0.5 - 1e-9) CHECK(cloth.positions == cloth.rest_positions);
+        if (step == 65) stopped = cloth.positions;
     }
     CHECK(cloth.positions == stopped);
 }
@@ -88,11 +84,8 @@ TEST_CASE("pins: held ones lose any velocity they had and keep every bit") {
     CHECK_FALSE(pins.moving());
     pins.set_velocities(cloth, 0.0, time_step);
     advance_positions(cloth, time_step);
-    for (const std::size_t vertex : {1, 4}) {
-        for (std::size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) {
-            CHECK(cloth.positions[i] == cloth.rest_positions[i]);
-        }
-    }
+    for (const std::size_t vertex : {1, 4})
+        for (std::size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) CHECK(cloth.positions[i] == cloth.rest_positions[i]);
     CHECK(cloth.positions[0] != cloth.rest_positions[0]);
 }
 

@@ -58,9 +58,8 @@ TEST_CASE("springs: K times a vector is the change of force along it where no sp
     SpringOperator system(cloth, all_springs(cloth, 20.0, 3.0));
     system.linearize(cloth, 1.0, 0.0);
     const std::size_t size = cloth.positions.size();
-    for (const Spring& spring : system.springs()) {
+    for (const Spring& spring : system.springs())
         REQUIRE(make_spring(spring.a, spring.b, cloth.positions, 1.0).rest_length > spring.rest_length);
-    }
     const std::vector<double> direction = noise(size, 1.0, 7);
     const double step = 1e-6;
     std::vector<double> ahead(size), behind(size), product(size, 0.0);
@@ -70,9 +69,7 @@ TEST_CASE("springs: K times a vector is the change of force along it where no sp
     probe.positions = moved(cloth.positions, -step, direction);
     system.spring_forces(probe, behind);
     std::vector<double> difference = moved(ahead, -1.0, behind);
-    for (double& value : difference) {
-        value /= 2.0 * step;
-    }
+    for (double& value : difference) value /= 2.0 * step;
     system.add_stiffness(direction, product);
     CHECK(norm(moved(product, -1.0, difference)) < 1e-7 * norm(difference));
 }
@@ -91,9 +88,7 @@ TEST_CASE("springs: the system is symmetric positive definite on free vertices, 
         unit[static_cast<std::size_t>(column)] = pinned ? 0.0 : 1.0;
         system.apply(unit, image);
         matrix.col(column) = Eigen::Map<Eigen::VectorXd>(image.data(), size);
-        if (pinned) {
-            matrix(column, column) = 1.0;
-        }
+        if (pinned) matrix(column, column) = 1.0;
     }
     CHECK((matrix - matrix.transpose()).norm() <= 1e-14 * matrix.norm());
     const double lightest = *std::min_element(cloth.masses.begin(), cloth.masses.end()) * (1.0 + time_step * damping);
@@ -108,14 +103,11 @@ TEST_CASE("springs: the preconditioner inverts the blocks on the diagonal and no
     for (std::size_t vertex = 0; vertex < size / 3; ++vertex) {
         std::vector<double> vector(size, 0.0), image(size), back(size);
         const std::vector<double> local = noise(3, 1.0, static_cast<std::uint32_t>(vertex));
-        if (vertex != 3) {
+        if (vertex != 3)
             std::copy(local.begin(), local.end(), vector.begin() + static_cast<std::ptrdiff_t>(3 * vertex));
-        }
         system.apply(vector, image);
         system.precondition(image, back);
-        for (std::size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) {
-            CHECK(back[i] == Approx(vector[i]).margin(1e-12));
-        }
+        for (std::size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) CHECK(back[i] == Approx(vector[i]).margin(1e-12));
         CHECK(image[9] * image[9] + image[10] * image[10] + image[11] * image[11] == 0.0);
         CHECK(back[9] * back[9] + back[10] * back[10] + back[11] * back[11] == 0.0);
     }

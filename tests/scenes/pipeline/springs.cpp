@@ -49,9 +49,7 @@ TEST_CASE("springs: two triangles have one bending spring between the far corner
     const auto springs = bending_springs(*topology, mesh.positions, 5.0);
     REQUIRE(springs.size() == 1);
     CHECK(springs[0].rest_length == Approx(std::sqrt(2.0)).epsilon(1e-15));
-    for (const auto& [a, b] : topology->edges()) {
-        CHECK((springs[0].a != a || springs[0].b != b));
-    }
+    for (const auto& [a, b] : topology->edges()) CHECK((springs[0].a != a || springs[0].b != b));
 }
 
 TEST_CASE("springs: three pages at one edge give a bending spring for each pair of pages") {

@@ -24,9 +24,7 @@ StandAloneSprings springs_of(const test::Mesh& mesh) {
 // Parts that springs leave the vertices in, by spreading one label: slow and plain, to check connected_parts with.
 std::size_t parts_by_spreading(std::size_t vertex_count, const std::vector<Spring>& springs) {
     std::vector<std::size_t> label(vertex_count);
-    for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) {
-        label[vertex] = vertex;
-    }
+    for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) label[vertex] = vertex;
     for (bool changed = true; changed;) {
         changed = false;
         for (const Spring& spring : springs) {
@@ -82,9 +80,8 @@ TEST_CASE("stand-alone springs: every vertex of a grid is held in two directions
                 zz[vertex] += z * z;
             }
         }
-        for (std::size_t vertex = 0; vertex < 36; ++vertex) {
+        for (std::size_t vertex = 0; vertex < 36; ++vertex)
             CHECK(xx[vertex] * zz[vertex] - xz[vertex] * xz[vertex] > 0.1);
-        }
     }
 }
 

@@ -42,7 +42,7 @@ std::string difference_of(const std::vector<Filtered>& a, const std::vector<Filt
         words << ", cloth " << n << (velocities ? ": velocities" : ": statistics alone");
         for (const Stats& stats : {a[n].stats, b[n].stats})
             words << " (status " << static_cast<int>(stats.status) << ", sub-steps " << stats.sub_steps
-                  << ", iterations " << stats.cg_iterations << ", residual " << stats.residual << ", max "
+                  << ", iterations " << stats.iterations << ", residual " << stats.residual << ", max "
                   << stats.max_area_change << ", rms " << stats.rms_area_change << ')';
     }
     return words.str();

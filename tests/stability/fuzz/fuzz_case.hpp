@@ -38,9 +38,9 @@ struct FuzzCase {
 
 /// True where what a call does depends on the calls before it.
 inline bool remembers(const FuzzCase& c) {
-    bool result = c.options.kept_pressures > 0;
+    bool result = c.options.warm_start_sub_steps > 0;
     for (const FuzzCall& call : c.calls)
-        for (const Parameters& parameters : call.parameters) result = result || parameters.adaptive_iterations > 0;
+        for (const Parameters& parameters : call.parameters) result = result || parameters.adaptive_threshold > 0;
     return result;
 }
 

@@ -36,7 +36,7 @@ Parameters illegal_parameters(Random& random) {
             p.max_iterations = random.one_of({0, -1});
             break;
         case 6:
-            p.adaptive_iterations = -1;
+            p.adaptive_threshold = -1;
             break;
         default:
             p.first_regularization = random.one_of({1.0f, 0.5f, -2.0f, infinity, not_a_number});

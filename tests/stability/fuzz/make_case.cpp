@@ -30,12 +30,12 @@ Options random_options(std::uint64_t number) {
     }
     options.inverse_mass_stride = random.one_of({1u, 1u, 4u});
     options.regularization_per_triangle = random.chance(0.3);
-    options.kept_pressures = number % 12 == 6 ? random.one_of({1u, 3u}) : 0;
+    options.warm_start_sub_steps = number % 12 == 6 ? random.one_of({1u, 3u}) : 0;
     if (number == 11) {  // the consistent matrix, matrix-free, many groups
         options.solver = Solver::chebyshev;
         options.regularization_per_triangle = false;
-        options.kept_pressures = 0;
-        options.bound_period = random.one_of({1u, 3u});
+        options.warm_start_sub_steps = 0;
+        options.bound_interval = random.one_of({1u, 3u});
     }
     return options;
 }
@@ -53,7 +53,7 @@ Parameters random_parameters(Random& random, bool may_adapt) {
     p.stepping = random.one_of({Stepping::automatic, Stepping::whole_step, Stepping::small_steps});
     if (p.sub_steps < 2) p.stepping = Stepping::whole_step;
     p.enabled = !random.chance(0.05);
-    if (may_adapt) p.adaptive_iterations = random.one_of({1, 4, 20});
+    if (may_adapt) p.adaptive_threshold = random.one_of({1, 4, 20});
     return p;
 }
 
@@ -88,7 +88,7 @@ FuzzCase CaseMaker::make(std::uint64_t number) {
     FuzzCase c;
     c.options = options_;
     // Such limiters remember, so that each case needs its own: few of them.
-    if (random.chance(0.8)) c.options.kept_pressures = 0;
+    if (random.chance(0.8)) c.options.warm_start_sub_steps = 0;
     c.offset = random.one_of({0u, 0u, 1u, 5u, 1000u});
     for (std::size_t n = 0; n < meshes_.size(); ++n)
         c.cloths.push_back(random_state(random, meshes_[n], topologies_[n]));

@@ -54,7 +54,7 @@ Check check_off(const MovingCloth& cloth, const Filtered& filtered) {
     if (stats.status != Status::off)
         return broken("switched off, and the status is another", {{"status", static_cast<double>(stats.status)}});
     if (!same_velocities(cloth.velocities, filtered.velocities)) return broken("off, but velocities changed", {});
-    if (stats.sub_steps != 0 || stats.cg_iterations != 0 || stats.max_area_change != 0.0f ||
+    if (stats.sub_steps != 0 || stats.iterations != 0 || stats.max_area_change != 0.0f ||
         stats.rms_area_change != 0.0f || stats.offender != Offender::none)
         return broken("off, and statistics are not zero", {{"max", stats.max_area_change}});
     return {};
@@ -94,11 +94,11 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
             parameters.tolerance > 0.0f ? "ordinary input diverged" : "ordinary input diverged at tolerance 0",
             {{"greatest area change before", facts.max_before}});
     if (diverged) return {};
-    const int most = parameters.max_iterations + (options.kept_pressures > 0 ? 1 : 0);
-    if (stats.sub_steps < 0 || stats.sub_steps > parameters.sub_steps || stats.cg_iterations < 0 ||
-        stats.cg_iterations > most * stats.sub_steps)
+    const int most = parameters.max_iterations + (options.warm_start_sub_steps > 0 ? 1 : 0);
+    if (stats.sub_steps < 0 || stats.sub_steps > parameters.sub_steps || stats.iterations < 0 ||
+        stats.iterations > most * stats.sub_steps)
         return broken("more sub-steps or iterations than allowed",
-                      {{"sub-steps", stats.sub_steps}, {"iterations", stats.cg_iterations}});
+                      {{"sub-steps", stats.sub_steps}, {"iterations", stats.iterations}});
     if (!std::isfinite(stats.max_area_change) || !std::isfinite(stats.rms_area_change) ||
         !std::isfinite(stats.residual))
         return broken("statistics that are not finite without having diverged",
@@ -163,7 +163,7 @@ Check check_bound(const MovingCloth& cloth, const CallFacts& facts, const Option
     if (!(damping > 0.0) || !std::isfinite(facts.scaled_excess)) return {};
     double bound = facts.scaled_excess * std::sqrt(2.0 / damping);
     if (options.matrix == Matrix::printed) bound *= std::sqrt(3.0 * facts.greatest_valence / damping);
-    if (options.kept_pressures > 0) bound *= 2.0;
+    if (options.warm_start_sub_steps > 0) bound *= 2.0;
     // Σ |Δx|²/w = 2 Σ x q(x)² b̄² with b̄² ≤ b²/D, and x q² ≤ 4/3 q(0) = 4/3 · 1.07 degree².
     if (options.solver == Solver::chebyshev) bound *= 2.0;
     const auto time_step = static_cast<double>(parameters.time_step);
@@ -204,7 +204,7 @@ Check check_momentum(const MovingCloth& cloth, const CallFacts& facts, const Opt
     const double pressures = options.solver == Solver::chebyshev
                                  ? 3.0 / damping * facts.scaled_excess  // q(0) = 1.07 degree²
                                  : std::sqrt(facts.smallest_alpha) / damping * facts.scaled_excess *
-                                       (options.kept_pressures > 0 ? 2.0 : 1.0);
+                                       (options.warm_start_sub_steps > 0 ? 2.0 : 1.0);
     const double leak = std::sqrt(2.0) * unit * pressures * std::sqrt(shares);
     const auto time_step = static_cast<double>(parameters.time_step);
     double change[3] = {}, rounding = 0.0;

@@ -111,7 +111,7 @@ TEST_CASE("each property sees what breaks it") {
     bad.stats.status = Status::diverged;
     CHECK(broken_property(cloth, bad, parameters) == "diverged, but velocities changed");
     bad = good;
-    bad.stats.sub_steps = bad.stats.cg_iterations = 0;
+    bad.stats.sub_steps = bad.stats.iterations = 0;
     bad.stats.residual = 0.0f;
     bad.stats.status = Status::ok;
     Parameters met = parameters;
@@ -131,7 +131,7 @@ TEST_CASE("each property sees what breaks it") {
     bad.stats.rms_area_change = std::numeric_limits<float>::infinity();
     CHECK(broken_property(cloth, bad, parameters) == "statistics that are not finite without having diverged");
     bad = good;
-    bad.stats.cg_iterations = parameters.max_iterations + 1;
+    bad.stats.iterations = parameters.max_iterations + 1;
     CHECK(broken_property(cloth, bad, parameters) == "more sub-steps or iterations than allowed");
     bad = good;
     bad.stats.residual = 0.5f;

@@ -50,7 +50,7 @@ TEST_CASE("raised alpha: alpha - 1 times the factor, with a floor that lets 1 be
 }
 
 TEST_CASE("the factor doubles after a failed or long solve, halves after a short one, within 1 and 1024") {
-    const Parameters parameters{.adaptive_iterations = 10};
+    const Parameters parameters{.adaptive_threshold = 10};
     CHECK(adapted_factor(2.0, parameters, 11, true) == 4.0);
     CHECK(adapted_factor(2.0, parameters, 1, false) == 4.0);
     CHECK(adapted_factor(2.0, parameters, 10, true) == 2.0);
@@ -59,14 +59,14 @@ TEST_CASE("the factor doubles after a failed or long solve, halves after a short
     CHECK(adapted_factor(1.0, parameters, 0, true) == 1.0);
     CHECK(adapted_factor(1.5, parameters, 1, true) == 1.0);
     CHECK(adapted_factor(1024.0, parameters, 99, false) == 1024.0);
-    CHECK(adapted_factor(8.0, Parameters{.adaptive_iterations = 0}, 99, false) == 1.0);
+    CHECK(adapted_factor(8.0, Parameters{.adaptive_threshold = 0}, 99, false) == 1.0);
 }
 
 TEST_CASE("alpha rises until solves fit their iterations, and later solves converge") {
     const Parameters hard{
-        .regularization = 1.01f, .sub_steps = 1, .tolerance = 0.1f, .max_iterations = 3, .adaptive_iterations = 3};
+        .regularization = 1.01f, .sub_steps = 1, .tolerance = 0.1f, .max_iterations = 3, .adaptive_threshold = 3};
     Parameters fixed = hard;
-    fixed.adaptive_iterations = 0;
+    fixed.adaptive_threshold = 0;
     Calls adaptive, plain;
     CHECK(plain.call(fixed).status != Status::ok);
     std::vector<Status> statuses;
@@ -86,9 +86,9 @@ TEST_CASE("alpha rises until solves fit their iterations, and later solves conve
 
 TEST_CASE("alpha comes back to what was given once solves take few iterations") {
     const Parameters hard{
-        .regularization = 1.2f, .sub_steps = 3, .tolerance = 1e-3f, .max_iterations = 2, .adaptive_iterations = 2};
+        .regularization = 1.2f, .sub_steps = 3, .tolerance = 1e-3f, .max_iterations = 2, .adaptive_threshold = 2};
     const Parameters easy{
-        .regularization = 1.2f, .sub_steps = 3, .tolerance = 0.1f, .max_iterations = 50, .adaptive_iterations = 40};
+        .regularization = 1.2f, .sub_steps = 3, .tolerance = 0.1f, .max_iterations = 50, .adaptive_threshold = 40};
     Calls calls, fresh;
     calls.call(hard);
     const std::vector<double> given = (fresh.call(easy), fresh.velocities);
@@ -98,17 +98,17 @@ TEST_CASE("alpha comes back to what was given once solves take few iterations") 
     CHECK(calls.velocities == given);  // to the bit
 }
 
-TEST_CASE("adaptive_iterations of 0 leaves every bit as it is, and forgets what was raised") {
+TEST_CASE("adaptive_threshold of 0 leaves every bit as it is, and forgets what was raised") {
     const Parameters plain{.regularization = 1.05f, .sub_steps = 4};
     Parameters never_needed = plain;
-    never_needed.adaptive_iterations = 1000;
+    never_needed.adaptive_threshold = 1000;
     Calls one, two;
     one.call(plain);
     two.call(never_needed);
     CHECK(one.velocities == two.velocities);
 
     Parameters always = plain;
-    always.adaptive_iterations = 1;
+    always.adaptive_threshold = 1;
     two.call(always);
     CHECK(one.velocities != two.velocities);
     Parameters single = plain;

@@ -28,7 +28,7 @@ struct Altitude {
 };
 
 constexpr float alpha = 2.0f;
-Parameters walk(int sub_steps) {
+Parameters with_small_steps(int sub_steps) {
     return {.time_step = 0.5f,
             .regularization = alpha,
             .sub_steps = sub_steps,
@@ -39,33 +39,33 @@ Parameters walk(int sub_steps) {
 }  // namespace
 
 TEST_CASE("small steps from 20 sub-steps up, and never with fewer than two") {
-    const auto walked = [](int sub_steps, Stepping stepping) {
-        return ResolvedParameters(Parameters{.sub_steps = sub_steps, .stepping = stepping}).walked;
+    const auto small_steps = [](int sub_steps, Stepping stepping) {
+        return ResolvedParameters(Parameters{.sub_steps = sub_steps, .stepping = stepping}).small_steps;
     };
-    CHECK(walked(19, Stepping::automatic) == 0);
-    CHECK(walked(20, Stepping::automatic) == 19);
-    CHECK(walked(50, Stepping::whole_step) == 0);
-    CHECK(walked(2, Stepping::small_steps) == 1);
-    CHECK(walked(1, Stepping::small_steps) == 0);
+    CHECK(small_steps(19, Stepping::automatic) == 0);
+    CHECK(small_steps(20, Stepping::automatic) == 19);
+    CHECK(small_steps(50, Stepping::whole_step) == 0);
+    CHECK(small_steps(2, Stepping::small_steps) == 1);
+    CHECK(small_steps(1, Stepping::small_steps) == 0);
     CHECK(ResolvedParameters(Parameters{.tolerance = 0.1f, .stepping = Stepping::whole_step}).solve_tolerance == 0.1f);
     CHECK(ResolvedParameters(Parameters{.tolerance = 0.1f}).solve_tolerance == Approx(0.3f));
     CHECK(ResolvedParameters(Parameters{.tolerance = 0.9f}).solve_tolerance == Approx(0.9f));
 }
 
-TEST_CASE("small steps: a walk along an altitude, by hand") {
+TEST_CASE("small steps: along an altitude, by hand") {
     // Three sub-steps, so two parts. Δt v = 0.4: at h = 1.2 the first solve takes 0.1 off, the velocity loses 2 × 0.1,
     // the second part adds (0.4 − 0.2) / 2 = 0.1: h = 1.2, again 0.1 off: 1.1. The last takes 0.05 off: h = 1.05.
     const Altitude triangle;
-    const auto [speed, stats] = triangle.speed_after(0.8, walk(3));
+    const auto [speed, stats] = triangle.speed_after(0.8, with_small_steps(3));
     CHECK(stats.sub_steps == 3);
     CHECK(stats.initial_max_area_change == Approx(0.4f));
     CHECK(stats.max_area_change == Approx(0.05f));
     CHECK(speed == Approx(0.05 / 0.5));
 }
 
-TEST_CASE("small steps: the target is looked at before the walk and before its last sub-step") {
+TEST_CASE("small steps: the target is looked at before the first and before its last sub-step") {
     const Altitude triangle;
-    Parameters parameters = walk(3);
+    Parameters parameters = with_small_steps(3);
     parameters.target_area_change = 0.4001f;
     CHECK(triangle.speed_after(0.8, parameters).second.sub_steps == 0);
     CHECK(triangle.speed_after(0.8, parameters).first == 0.8);
@@ -81,7 +81,7 @@ TEST_CASE("small steps: the error of the start is led back over the parts, by ha
     // The last takes 0.05 off: h = 1.05. In all −0.35 over Δt = 0.5.
     Altitude triangle;
     triangle.positions[7] = 1.4;
-    const auto [speed, stats] = triangle.speed_after(0.0, walk(3));
+    const auto [speed, stats] = triangle.speed_after(0.0, with_small_steps(3));
     CHECK(speed == Approx(-0.7));
     CHECK(stats.max_area_change == Approx(0.05f));
     CHECK(start_error_left(0, 2) == 0.5f);
@@ -95,7 +95,7 @@ TEST_CASE("small steps: no triangle is asked for more than four times its area")
     // 0.7. The last takes half of what is left: 0.85.
     Altitude triangle;
     triangle.positions[7] = 0.1;
-    const auto [speed, stats] = triangle.speed_after(0.0, walk(3));
+    const auto [speed, stats] = triangle.speed_after(0.0, with_small_steps(3));
     CHECK(stats.max_area_change == Approx(0.15f));
     CHECK(speed == Approx(1.5));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compare/contenders.hpp"
+#include "compare/compared_methods.hpp"
 
 #include "run/input_error.hpp"
 
@@ -11,34 +11,33 @@ using namespace apsl::compare;
 
 namespace {
 
-const nlohmann::json kScene = nlohmann::json::parse(R"({
+const nlohmann::json scene_text = nlohmann::json::parse(R"({
     "mesh": {"grid": {}}, "time_step": 0.02, "steps_per_frame": 2,
     "integrator": {"implicit_springs": {"stretch_stiffness": 5}}, "strain_limiting": {"sub_steps": 7}})");
 
-PreparedScene prepared(const std::string& method, const KnobValues& knobs) {
-    return prepare_scene(find_contender(method), kScene, "scene.json", knobs);
+PreparedScene prepared(const std::string& method, const ParameterValues& parameters) {
+    return prepare_scene(find_method(method), scene_text, "scene.json", parameters);
 }
 
 }  // namespace
 
-TEST_CASE("contenders have names of their own, ours and every rival among them") {
+TEST_CASE("methods have names of their own, ours and every baseline among them") {
     std::set<std::string> names;
-    for (const Contender& contender : contenders()) names.insert(contender.name);
-    CHECK(names.size() == contenders().size());
+    for (const ComparedMethod& method : compared_methods()) names.insert(method.name);
+    CHECK(names.size() == compared_methods().size());
     CHECK(names.count("apsl") == 1);
     for (const methods::MethodInfo& method : methods::all_methods()) CHECK(names.count(method.name) == 1);
-    CHECK_THROWS_WITH(find_contender("nothing"), Catch::Contains("unknown method \"nothing\", expected one of none"));
+    CHECK_THROWS_WITH(find_method("nothing"), Catch::Contains("unknown method \"nothing\", expected one of none"));
 }
 
 TEST_CASE("every standard sweep is legal and made of different runs") {
-    for (const Contender& contender : contenders()) {
-        CAPTURE(contender.name);
+    for (const ComparedMethod& method : compared_methods()) {
+        CAPTURE(method.name);
         std::set<std::string> runs;
-        for (const KnobValues& knobs : standard_sweep(contender)) {
-            runs.insert(prepare_scene(contender, kScene, "scene.json", knobs).knobs.dump());
-        }
+        for (const ParameterValues& parameters : standard_sweep(method))
+            runs.insert(prepare_scene(method, scene_text, "scene.json", parameters).parameters.dump());
         CHECK_FALSE(runs.empty());
-        CHECK(runs.size() == standard_sweep(contender).size());
+        CHECK(runs.size() == standard_sweep(method).size());
     }
 }
 
@@ -47,8 +46,8 @@ TEST_CASE("only ours keep the strain limiting, with the scene's own values where
     const PreparedScene ours = prepared("apsl", {{"strain_limiting.regularization", 1.05}});
     CHECK(ours.document["strain_limiting"]["matrix"] == "consistent");
     CHECK(ours.document["strain_limiting"]["regularization"] == 1.05);
-    CHECK(ours.knobs["strain_limiting.sub_steps"] == 7);
-    CHECK(ours.knobs["strain_limiting.tolerance"] == 0.1);
+    CHECK(ours.parameters["strain_limiting.sub_steps"] == 7);
+    CHECK(ours.parameters["strain_limiting.tolerance"] == 0.1);
     CHECK(prepared("apsl_printed", {}).document["strain_limiting"]["matrix"] == "printed");
 }
 
@@ -60,32 +59,32 @@ TEST_CASE("a frame keeps its length whatever its steps") {
     const PreparedScene small_steps = prepared("none", {{"steps_per_frame", 8}});
     CHECK(small_steps.document["steps_per_frame"] == 8);
     CHECK(small_steps.document["time_step"].get<double>() == Approx(0.005));
-    CHECK(small_steps.knobs["steps_per_frame"] == 8);
-    CHECK(prepared("none", {}).knobs["steps_per_frame"] == 2);
+    CHECK(small_steps.parameters["steps_per_frame"] == 8);
+    CHECK(prepared("none", {}).parameters["steps_per_frame"] == 2);
 }
 
 TEST_CASE("stiff springs are the scene's, times a factor") {
     const PreparedScene stiff = prepared("springs", {{"stretch_stiffness_factor", 30}});
     CHECK(stiff.document["integrator"]["implicit_springs"]["stretch_stiffness"] == 150.0);
-    nlohmann::json stand_alone = kScene;
+    nlohmann::json stand_alone = scene_text;
     stand_alone["integrator"] = {{"stand_alone", nlohmann::json::object()}};
-    CHECK_THROWS_AS(prepare_scene(find_contender("springs"), stand_alone, "scene.json", {}), scenes::InputError);
+    CHECK_THROWS_AS(prepare_scene(find_method("springs"), stand_alone, "scene.json", {}), scenes::InputError);
 }
 
 TEST_CASE("lists of values make every combination") {
-    const std::vector<KnobValues> all = combinations({{"a", {1, 2}}, {"b", {3, 4, 5}}, {"c", 6}});
+    const std::vector<ParameterValues> all = combinations({{"a", {1, 2}}, {"b", {3, 4, 5}}, {"c", 6}});
     REQUIRE(all.size() == 6);
-    CHECK(all.front() == KnobValues{{"a", 1}, {"b", 3}, {"c", 6}});
-    CHECK(all.back() == KnobValues{{"a", 2}, {"b", 5}, {"c", 6}});
+    CHECK(all.front() == ParameterValues{{"a", 1}, {"b", 3}, {"c", 6}});
+    CHECK(all.back() == ParameterValues{{"a", 2}, {"b", 5}, {"c", 6}});
 }
 
-TEST_CASE("knobs that a method does not have or take are named") {
-    const auto refused = [](const std::string& method, const KnobValues& knobs, const std::string& what) {
-        CHECK_THROWS_WITH(check_knobs(find_contender(method), knobs), Catch::Contains(what));
+TEST_CASE("parameters that a method does not have or take are named") {
+    const auto refused = [](const std::string& method, const ParameterValues& parameters, const std::string& what) {
+        CHECK_THROWS_WITH(check_parameters(find_method(method), parameters), Catch::Contains(what));
     };
-    refused("none", {{"sub_steps", 1}}, "none: unknown knob \"sub_steps\", expected one of steps_per_frame");
+    refused("none", {{"sub_steps", 1}}, "none: unknown parameter \"sub_steps\", expected one of steps_per_frame");
     refused("apsl", {{"density", 1}}, "a path below strain_limiting or integrator");
     refused("apsl", {{"strain_limiting.regularization", 0.5}}, "expected a number ≥ 1");
     refused("springs", {{"stretch_stiffness_factor", "stiff"}}, "is \"stiff\", expected a number ≥ 0");
-    CHECK_NOTHROW(check_knobs(find_contender("apsl"), {{"strain_limiting.max_iterations", 9}}));
+    CHECK_NOTHROW(check_parameters(find_method("apsl"), {{"strain_limiting.max_iterations", 9}}));
 }

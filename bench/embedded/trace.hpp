@@ -15,15 +15,18 @@
 /// calls, one for the device's queue, µs since the first call. The queue must have CL_QUEUE_PROFILING_ENABLE.
 class Trace {
 public:
-    /// µs
-    static double now() {
-        return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    /// A frame begins, and with it its first stage.
+    void begin_frame(int frame) {
+        frame_ = frame;
+        queued_before_ = now();
     }
 
-    /// A stage that the host began to queue at `begin` and has just queued. `event`: of its last command. `many`: it is
-    /// more than that one command.
-    void add(const char* stage, int frame, double begin, const cl::Event& event, bool many) {
-        stages_.push_back({stage, frame, begin, now(), event, many});
+    /// The host has just queued a stage, and began to where it had queued the one before. `last`: the stage's last
+    /// command. `many`: it has others.
+    void add(const char* stage, const cl::Event& last, bool many) {
+        const double end = now();
+        stages_.push_back({stage, frame_, queued_before_, end, last, many});
+        queued_before_ = end;
     }
 
     /// Only once all commands have ended. The slice of a stage of many commands begins where the stage before ended: an
@@ -61,6 +64,11 @@ private:
         bool many;
     };
 
+    /// µs
+    static double now() {
+        return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+
     template <cl_profiling_info what>
     static double device_time(const Stage& stage) {
         return 1e-3 * static_cast<double>(stage.event.getProfilingInfo<what>());
@@ -76,4 +84,6 @@ private:
     }
 
     std::vector<Stage> stages_;
+    int frame_ = 0;
+    double queued_before_ = 0.0;  // µs
 };

@@ -6,14 +6,14 @@
 # without what lies between them). A small cloth's call is one launch, and alone it also pays for sending it off and for
 # waking up; there the kernels are what to compare with. Also the host's waits within frames, counted as
 # tests/embed/embedded_example_test.py does.
-#     bench/embedded.sh [ROUNDS, 5 where not given]
+#     bench/embedded/embedded.sh [ROUNDS, 5 where not given]
 # About two minutes on two quiet cores; on a busy machine the ratios mean little.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 
 rounds="${1:-5}"
 cmake --preset bench >/dev/null
-cmake --build --preset bench --target apsl_kernel_bench embedded_cloth embedded_cloth_gated
+cmake --build --preset bench --target apsl_kernel_bench traced_cloth embedded_cloth_gated
 # One OpenCL driver a process: several at once have crashed.
 if [[ -z "${OCL_ICD_VENDORS:-}" && -f /etc/OpenCL/vendors/pocl.icd && ! -e /dev/nvidiactl && ! -e /dev/kfd ]]; then
   export OCL_ICD_VENDORS=/etc/OpenCL/vendors/pocl.icd
@@ -24,7 +24,7 @@ trap 'rm -rf "$work"' EXIT
 for grid in 33 129 513; do
   APSL_TEST_CALLS="$work/calls_$grid.json" build/bench/tests/embed/embedded_cloth_gated --grid "$grid" --frames 2 >/dev/null
   for ((round = 0; round < rounds; ++round)); do
-    build/bench/scenes/embedded/embedded_cloth --grid "$grid" --frames 10 --bench \
+    build/bench/bench/embedded/traced_cloth --grid "$grid" --frames 10 --bench \
       --trace "$work/trace_${grid}_$round.json" >/dev/null
     build/bench/bench/kernels/apsl_kernel_bench --grids "${grid}x$grid" --awkward-grids none --cloths 0 \
       --copy-megabytes 8 --filter "^filter_call/consistent matrix_free/" --out "$work/alone_${grid}_$round.json" \

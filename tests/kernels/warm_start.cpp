@@ -31,7 +31,8 @@ void write_guess(Arrays& arrays, const std::vector<std::vector<double>>& r) {
 
 }  // namespace
 
-TEST_CASE("first_guess: scaled to the solution's size, awkward sizes in every work-group size", "[first_guess]") {
+TEST_CASE("warm_start: scaled to the solution's size, awkward sizes in every work-group size",
+          "[measure_guess][start_from_guess]") {
     for (const std::uint32_t group : work_group_sizes())
         for (const std::uint32_t size : awkward_sizes(group)) {
             CAPTURE(group, size);
@@ -46,9 +47,9 @@ TEST_CASE("first_guess: scaled to the solution's size, awkward sizes in every wo
             launch::measure_guess(arrays, build);
             for (std::size_t c = 0; c < 2; ++c) {
                 const double expected = dot(r[c], arrays.of_cloth(guesses, c));
-                CHECK(std::abs(partial_sum(arrays, c, APSL_PARTIAL_GUESS) - expected) <=
+                CHECK(std::abs(partial_sum(arrays, c, APSLK_PARTIAL_GUESS) - expected) <=
                       sum_tolerance(2, r[c].size()) * expected);
-                arrays.write_partial_sum(c, APSL_PARTIAL_CURVATURE, 1.7 * expected);
+                arrays.write_partial_sum(c, APSLK_PARTIAL_CURVATURE, 1.7 * expected);
             }
             launch::start_from_guess(arrays, build);
             for (std::size_t c = 0; c < 2; ++c) {
@@ -64,17 +65,18 @@ TEST_CASE("first_guess: scaled to the solution's size, awkward sizes in every wo
                 CHECK(difference(arrays.of_cloth(arrays.pressure.read(), c), y) <=
                       sum_tolerance(8, left.size()) * norm(y));
                 CHECK(difference(arrays.of_cloth(arrays.residual.read(), c), left) <= off);
-                CHECK(std::abs(std::sqrt(partial_sum(arrays, c, APSL_PARTIAL_SCALED_RESIDUAL_EVEN)) - norm(left)) <=
+                CHECK(std::abs(std::sqrt(partial_sum(arrays, c, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN)) - norm(left)) <=
                       2.0 * off);
                 const double plain = std::sqrt(arrays.unscaled_squared(c, left));
-                CHECK(std::abs(std::sqrt(partial_sum(arrays, c, APSL_PARTIAL_RESIDUAL_EVEN)) - plain) <=
+                CHECK(std::abs(std::sqrt(partial_sum(arrays, c, APSLK_PARTIAL_RESIDUAL_EVEN)) - plain) <=
                       2.0 * off * plain / norm(left));
             }
             for (const float number : arrays.padding_of(arrays.pressure.read())) CHECK(number == 0.0f);
         }
 }
 
-TEST_CASE("first_guess: one that is no use is dropped, and a stopped cloth's is kept", "[first_guess]") {
+TEST_CASE("warm_start: one that is no use is dropped, and a stopped cloth's is kept",
+          "[measure_guess][start_from_guess]") {
     const std::vector<Cloth> cloths{make_cloth(strip(50), 1)};
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     for (const auto& [guess, curvature] :
@@ -85,18 +87,18 @@ TEST_CASE("first_guess: one that is no use is dropped, and a stopped cloth's is 
         arrays.product.write(arrays.over_triangles([](std::size_t, std::size_t) { return nan; }));
         const std::vector<float> before = arrays.residual.read();
         launch::measure_guess(arrays, {});
-        arrays.write_partial_sum(0, APSL_PARTIAL_CURVATURE, curvature);
+        arrays.write_partial_sum(0, APSLK_PARTIAL_CURVATURE, curvature);
         launch::start_from_guess(arrays, {});
         CHECK(same_bytes(arrays.residual.read(), before));
         for (const double y : arrays.of_cloth(arrays.pressure.read(), 0)) CHECK(y == 0.0);
         const double expected = norm(arrays.of_cloth(before, 0));
-        CHECK(std::abs(std::sqrt(partial_sum(arrays, 0, APSL_PARTIAL_SCALED_RESIDUAL_EVEN)) - expected) <=
+        CHECK(std::abs(std::sqrt(partial_sum(arrays, 0, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN)) - expected) <=
               sum_tolerance(2, 50) * expected);
     }
     Arrays arrays(cloths, Matrix::consistent, paper_setting, 2);
     write_guess(arrays, {arrays.of_cloth(arrays.residual.read(), 0)});
-    arrays.edit_states([](apsl_solve_state& state) { state.stopped = 1; });
-    arrays.write_partial_sum(0, APSL_PARTIAL_CURVATURE, 1.0);
+    arrays.edit_states([](apslk_solve_state& state) { state.stopped = 1; });
+    arrays.write_partial_sum(0, APSLK_PARTIAL_CURVATURE, 1.0);
     const std::vector<float> guess = arrays.pressure.read(), residual = arrays.residual.read();
     launch::measure_guess(arrays, {});
     launch::start_from_guess(arrays, {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compare/rival_filter.hpp"
+#include "compare/baseline_filter.hpp"
 
 #include "pipeline/geometry.hpp"
 
@@ -17,20 +17,18 @@ methods::Cloth as_method_cloth(const scenes::ClothState& cloth, double time_step
                         .rest_areas = cloth.rest_areas,
                         .inverse_masses = cloth.inverse_masses,
                         .time_step = time_step};
-    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v)
         copy.rest_positions.emplace_back(scenes::vector_at(std::span<const double>(cloth.rest_positions), v));
-    }
     return copy;
 }
 
 bool all_finite(std::span<const Eigen::Vector3f> positions) {
-    for (const Eigen::Vector3f& position : positions) {
+    for (const Eigen::Vector3f& position : positions)
         if (!position.allFinite()) return false;
-    }
     return true;
 }
 
-struct RivalFilter {
+struct BaselineFilter {
     std::shared_ptr<methods::Method> method;  // shared, for std::function copies what it holds
     double time_step;
     std::vector<Eigen::Vector3f> predicted, projected;
@@ -61,12 +59,15 @@ struct RivalFilter {
 
 }  // namespace
 
-scenes::CustomFilter make_rival_filter(const methods::MethodInfo& method, std::span<const methods::Knob> knobs,
-                                       const scenes::ClothState& cloth, double time_step) {
-    std::shared_ptr<methods::Method> made = methods::make_method(method.name, as_method_cloth(cloth, time_step), knobs);
-    return {.name = method.name,
-            .device = "this processor",
-            .filter = RivalFilter{.method = std::move(made), .time_step = time_step, .predicted = {}, .projected = {}}};
+scenes::CustomFilter make_baseline_filter(const methods::MethodInfo& method,
+                                          std::span<const methods::Parameter> parameters,
+                                          const scenes::ClothState& cloth, double time_step) {
+    std::shared_ptr<methods::Method> made =
+        methods::make_method(method.name, as_method_cloth(cloth, time_step), parameters);
+    return {
+        .name = method.name,
+        .device = "this processor",
+        .filter = BaselineFilter{.method = std::move(made), .time_step = time_step, .predicted = {}, .projected = {}}};
 }
 
 }  // namespace apsl::compare

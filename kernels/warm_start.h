@@ -2,54 +2,54 @@
 // A first guess for a solve: what the sub-step of the same number found in the call before, y₀, scaled by the t that
 // brings it nearest to the solution in the norm of A. So scaled, no guess is worse than none, however old.
 // Reference: apsl::reference::start_from_guess.
-#ifndef APSL_FIRST_GUESS_H
-#define APSL_FIRST_GUESS_H
+#ifndef APSLK_WARM_START_H
+#define APSLK_WARM_START_H
 
 #include "layout.h"
 #include "work_group.h"
 
 // Sub-steps of a call whose pressures are kept; later ones share the last place. 0: every solve starts from nothing.
-#ifndef APSL_KEPT_PRESSURES
-#define APSL_KEPT_PRESSURES 0
+#ifndef APSLK_WARM_START_SUB_STEPS
+#define APSLK_WARM_START_SUB_STEPS 0
 #endif
 
 // Where filter_in_one_group keeps a sub-step's pressures: one array each, behind those at work. Copied, since a pointer
 // that changes with the sub-step would be held in scalar registers through all of the solve.
-APSL_INLINE ulong kept_place(int sub_step, uint stride) {
-    return (ulong)(1 + min(sub_step, APSL_KEPT_PRESSURES - 1)) * stride;
+APSLK_INLINE ulong kept_place(int sub_step, uint stride) {
+    return (ulong)(1 + min(sub_step, APSLK_WARM_START_SUB_STEPS - 1)) * stride;
 }
 
-APSL_INLINE void copy_pressures(apsl_cloth cloth, __global float* to, __global const float* from) {
-    const apsl_range range = share_of(cloth.triangle_count, true);
-    for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE)
+APSLK_INLINE void copy_pressures(apslk_cloth cloth, __global float* to, __global const float* from) {
+    const apslk_range range = share_of(cloth.triangle_count, true);
+    for (uint n = range.first; n < range.end; n += APSLK_WORK_GROUP_SIZE)
         to[cloth.triangle_begin + n] = from[cloth.triangle_begin + n];
 }
 
 // This work-item's part of r̄·y₀.
-APSL_INLINE float guess_dot(apsl_cloth cloth, bool active, __global const float4* residual,
-                            __global const float4* pressure) {
+APSLK_INLINE float guess_dot(apslk_cloth cloth, bool active, __global const float4* residual,
+                             __global const float4* pressure) {
     const uint begin = cloth.triangle_begin / 4u;
-    const apsl_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
+    const apslk_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
     float4 sum = (float4)(0.0f);
-    for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE)
+    for (uint n = range.first; n < range.end; n += APSLK_WORK_GROUP_SIZE)
         sum += residual[begin + n] * pressure[begin + n];
     return sum_of_components(sum);
 }
 
 // t = r̄·y₀ / y₀·Ay₀; 0, which drops the guess, where that is no number.
-APSL_INLINE float guess_scale(float dot, float curvature) {
+APSLK_INLINE float guess_scale(float dot, float curvature) {
     const float scale = dot / curvature;
     return curvature > 0.0f && isfinite(scale) ? scale : 0.0f;
 }
 
 // y = t y₀, r = b − t A y₀ with A y₀ in `product`; this work-item's part of ‖r‖² and of r̄·r̄.
-APSL_INLINE float2 scale_guess(apsl_cloth cloth, bool active, float scale, __global float4* residual,
-                               __global const float4* damped_diagonal, __global const float4* product,
-                               __global float4* pressure) {
+APSLK_INLINE float2 scale_guess(apslk_cloth cloth, bool active, float scale, __global float4* residual,
+                                __global const float4* scaled_diagonal, __global const float4* product,
+                                __global float4* pressure) {
     const uint begin = cloth.triangle_begin / 4u;
-    const apsl_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
+    const apslk_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
     float4 squares = (float4)(0.0f), scaled_squares = (float4)(0.0f);
-    for (uint n = range.first; n < range.end; n += APSL_WORK_GROUP_SIZE) {
+    for (uint n = range.first; n < range.end; n += APSLK_WORK_GROUP_SIZE) {
         const uint i = begin + n;
         float4 r = residual[i], y = (float4)(0.0f);
         if (scale != 0.0f) {  // uniform; a dropped guess and its product may be anything
@@ -58,7 +58,7 @@ APSL_INLINE float2 scale_guess(apsl_cloth cloth, bool active, float scale, __glo
             residual[i] = r;
         }
         pressure[i] = y;
-        squares += r * r * damped_diagonal[i];
+        squares += r * r * scaled_diagonal[i];
         scaled_squares += r * r;
     }
     return (float2)(sum_of_components(squares), sum_of_components(scaled_squares));

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Constants of formulas that kernels and the reference (src/) each write down for themselves. No types: both languages
+// read this file.
+#ifndef APSLK_CONSTANTS_H
+#define APSLK_CONSTANTS_H
+
+// A greatest area change up to which a cloth is at rest: 32-bit positions tell no better.
+#define APSLK_AT_REST 1e-5f
+
+// The area that a small step asks of a triangle at most, as a multiple of its present area. A linearised step from
+// nearly no area overshoots without bound.
+#define APSLK_GREATEST_GROWTH 4.0f
+
+// The least effective mass of a vertex, in stiffnesses of the tension around it. Explicit steps swing from ½ down, with
+// growing amplitude (docs/formulation.md, Effective masses).
+#define APSLK_MASS_PER_STIFFNESS 2.0f
+// What is left of a stiffness one sub-step later: a swing passes through zero tension.
+#define APSLK_STIFFNESS_KEPT 0.9f
+// The greatest effective mass, in geometric mean masses of the cloth. A heavier vertex needs more pressure, which
+// stiffens it.
+#define APSLK_GREATEST_MEAN_MASSES 10.0f
+
+// Safety factor of the bound of the matrix. With Options::bound_interval above 1 the directions in it are those of an
+// earlier sub-step, and the cloth has moved since.
+#define APSLK_BOUND_MARGIN 1.1f
+// Further safety factor at vertices whose masses are raised: slivers turn fast.
+#define APSLK_RAISED_MARGIN 1.2f
+// A Chebyshev polynomial of degree √(this / (α − 1)) reaches as far as α (src/chebyshev_products.hpp).
+#define APSLK_CHEBYSHEV_REACH 2.8f
+
+// The α − 1 that an adaptive factor multiplies at least, so that α = 1 is raised too, and the greatest such factor.
+#define APSLK_LEAST_ADAPTED_DAMPING 0.05f
+#define APSLK_GREATEST_ADAPTIVE_FACTOR 1024.0f
+
+#endif
