@@ -49,7 +49,7 @@ void add_displacement(const scenes::ClothState& cloth, int frame, int frames, Me
 }
 
 void measure_cloth(const scenes::ClothState& cloth, int frame, const RunConditions& conditions, MeasuredRun& result) {
-    const PrincipalStretch stretch = principal_stretch(cloth);
+    const scenes::PrincipalStretch stretch = scenes::range_of(scenes::principal_stretches(cloth));
     result.principal_stretch.min = std::min(result.principal_stretch.min, stretch.min);
     result.principal_stretch.max = std::max(result.principal_stretch.max, stretch.max);
     if (conditions.converged == nullptr) return;

@@ -4,6 +4,7 @@
 #include "compare/compared_methods.hpp"
 #include "compare/converged_solution.hpp"
 #include "compare/measures.hpp"
+#include "pipeline/measures.hpp"
 #include "run/opencl_devices.hpp"
 #include "run/report.hpp"
 
@@ -43,7 +44,7 @@ struct MeasuredRun {
     std::string device;  ///< what the limiter ran on, "none" without one
     std::size_t vertices = 0;
     std::size_t triangles = 0;
-    PrincipalStretch principal_stretch;  ///< over all ends of frames
+    scenes::PrincipalStretch principal_stretch;  ///< over all ends of frames
     std::vector<FrameDeviation> deviation;
     scenes::Energy start_energy;  ///< before the first step
     std::array<double, 3>

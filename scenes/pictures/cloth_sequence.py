@@ -84,8 +84,9 @@ def choose_frames(frames, wanted, every=1):
     return chosen[::every]
 
 
-def read_cloth(frame):
-    """The cloth of one frame, checked: points, triangles and the cell data `area_change`."""
+def read_cloth(frame, with_stretch=False):
+    """The cloth of one frame, checked: points, triangles and the cell data `area_change`; `principal_stretch` too where
+    that is asked for."""
     if not frame.path.is_file():
         raise PictureError(f"{frame.path}: no such file, though the index names it")
     reader = vtkXMLPolyDataReader()
@@ -100,9 +101,11 @@ def read_cloth(frame):
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
     if corners.min() < 0 or corners.max() >= surface.GetNumberOfPoints():
         raise PictureError(f"{frame.path}: a triangle names a vertex outside 0 to {surface.GetNumberOfPoints() - 1}")
+    for name in ("area_change", "principal_stretch") if with_stretch else ("area_change",):
+        values = surface.GetCellData().GetArray(name)
+        if values is None or values.GetNumberOfTuples() != triangles:
+            raise PictureError(f"{frame.path}: no cell data `{name}` for each triangle, which `apsl run` writes")
     values = surface.GetCellData().GetArray("area_change")
-    if values is None or values.GetNumberOfTuples() != triangles:
-        raise PictureError(f"{frame.path}: no cell data `area_change` for each triangle, which `apsl run` writes")
     return Cloth(surface, vtk_to_numpy(values).astype(np.float64))
 
 

@@ -24,6 +24,13 @@ FEATURE_ANGLE = 75.0  # degrees; sharper creases than this keep a crease, all el
 
 
 @dataclass(frozen=True)
+class Colouring:
+    array: str  # the cell data that is shown
+    white: float  # its value that is white
+    red: float  # and pure red, as are those above
+
+
+@dataclass(frozen=True)
 class Camera:
     position: tuple  # m
     focal_point: tuple  # m
@@ -95,17 +102,18 @@ class ClothView:
                 self._renderer.AddActor(actor)
         self._build_cloth()
 
-    def draw(self, surface, red=None):
-        """A picture of the panel. red: the area change that is pure red; None for plain material."""
+    def draw(self, surface, colouring=None):
+        """A picture of the panel; plain material without a colouring."""
         self._normals.SetInputData(surface)
         self._edges.SetInputData(surface)
         mapper = self._cloth.GetMapper()
-        mapper.SetScalarVisibility(red is not None)
-        if red is None:
+        mapper.SetScalarVisibility(colouring is not None)
+        if colouring is None:
             self._cloth.SetBackfaceProperty(self._back)
             self._cloth.SetProperty(self._front)
         else:
-            mapper.SetScalarRange(0.0, max(red, 1e-30))
+            mapper.SelectColorArray(colouring.array)
+            mapper.SetScalarRange(colouring.white, max(colouring.red, colouring.white + 1e-30))
             self._cloth.SetBackfaceProperty(None)
             self._cloth.SetProperty(self._coloured)
         self._renderer.ResetCameraClippingRange()
@@ -147,7 +155,6 @@ class ClothView:
         mapper.SetLookupTable(white_to_red())
         mapper.UseLookupTableScalarRangeOff()
         mapper.SetScalarModeToUseCellFieldData()
-        mapper.SelectColorArray("area_change")
         self._coloured = material((1.0, 1.0, 1.0), ambient=0.30, diffuse=0.95)
         self._front = material(CLOTH_FRONT, ambient=0.22, diffuse=1.0)
         self._back = material(CLOTH_BACK, ambient=0.22, diffuse=1.0)

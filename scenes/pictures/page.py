@@ -5,6 +5,7 @@ import contextlib
 import io
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 from picture_error import PictureError, needs_package
 
@@ -13,12 +14,13 @@ try:
 except ImportError as missing:
     needs_package("python3-pil", missing)
 
-from cloth_view import BACKGROUND
+from cloth_view import BACKGROUND, Colouring
 
 PAPER = tuple(round(255 * channel) for channel in BACKGROUND)
 INK = (236, 239, 242)
 FAINT = (168, 178, 190)
-VIEWS = ("cloth", "absolute", "normalised")
+VIEWS = ("cloth", "absolute", "normalised", "stretch")
+USUAL_VIEWS = VIEWS[:3]
 
 
 def percent(fraction):
@@ -41,26 +43,36 @@ def font(size, bold=False):
         raise PictureError(f"the font {name} is missing: apt-get install fonts-dejavu-core") from None
 
 
-def red_at(view, red, max_area_change):
-    """The area change that a view draws pure red; None for plain material."""
+class Red(NamedTuple):
+    """What is drawn pure red, and from there on."""
+    area_change: float
+    stretch: float
+
+
+def colouring(view, red, max_area_change):
+    """What a view is coloured by; None for plain material."""
     if view == "cloth":
         return None
+    if view == "stretch":
+        return Colouring("principal_stretch", 1.0, red.stretch)
     if view == "absolute":
-        return red
+        return Colouring("area_change", 0.0, red.area_change)
     # A cloth at rest has nothing to normalise by and stays white; one that broke down falls back to the stated change.
-    return max_area_change if 0.0 < max_area_change < float("inf") else red
+    return Colouring("area_change", 0.0, max_area_change if 0.0 < max_area_change < float("inf") else red.area_change)
 
 
 def caption(view, red, max_area_change):
     if view == "cloth":
         return "cloth"
+    if view == "stretch":
+        return f"principal stretch, red from {red.stretch:.3g}"
     if view == "absolute":
-        return f"area change, red from {percent(red)}"
+        return f"area change, red from {percent(red.area_change)}"
     return f"area change, red at the greatest ({percent(max_area_change)})"
 
 
-def colour_bar(draw, left, top, width, height, top_value, open_ended):
-    """White to red from 0 to top_value with five ticks; `open_ended` says that red holds for all above as well."""
+def colour_bar(draw, left, top, width, height, colours, open_ended):
+    """White to red over the range of `colours` with three ticks; `open_ended`: red holds for all above as well."""
     for column in range(width):
         rest = round(255 * (1 - column / max(width - 1, 1)))
         draw.line([(left + column, top), (left + column, top + height - 1)], fill=(255, rest, rest))
@@ -68,7 +80,8 @@ def colour_bar(draw, left, top, width, height, top_value, open_ended):
     for tick in range(3):
         at = left + round(tick * (width - 1) / 2)
         draw.line([(at, top + height), (at, top + height + 3)], fill=FAINT)
-        text = percent(tick * top_value / 2)
+        value = colours.white + tick * (colours.red - colours.white) / 2
+        text = percent(value) if colours.array == "area_change" else f"{value:.4g}"
         if tick == 2 and open_ended:
             text = "≥ " + text
         draw.text((at, top + height + 5), text, font=label, fill=FAINT, anchor="mt" if tick == 1 else
@@ -99,14 +112,14 @@ def draw_row(page, top, height, window, cloth, views, red, title):
     for place, view in enumerate(views):
         left, below = place * width, top + 2 * unit + panel_height
         middle = left + width // 2
-        pure_red = red_at(view, red, cloth.max_area_change)
-        page.paste(window.draw(cloth.surface, pure_red), (left, top + 2 * unit))
+        colours = colouring(view, red, cloth.max_area_change)
+        page.paste(window.draw(cloth.surface, colours), (left, top + 2 * unit))
         draw.text((middle, below + unit // 4), caption(view, red, cloth.max_area_change),
                   font=font(max(11, round(0.72 * unit))), fill=INK, anchor="ma")
-        if pure_red is not None:
+        if colours is not None:
             bar = round(0.62 * width)
-            colour_bar(draw, middle - bar // 2, below + round(1.5 * unit), bar, max(8, round(0.6 * unit)), pure_red,
-                       open_ended=view == "absolute")
+            colour_bar(draw, middle - bar // 2, below + round(1.5 * unit), bar, max(8, round(0.6 * unit)), colours,
+                       open_ended=view != "normalised")
 
 
 def png_bytes(image, limit=None):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Draws the frames that `apsl run --out DIR` wrote, coloured by area change: white at rest, red where stretched."""
+"""Draws the frames that `apsl run --out DIR` wrote, coloured by area change or principal stretch: white at rest, red where stretched."""
 
 import argparse
 import re
@@ -12,7 +12,7 @@ import numpy as np
 from arguments import add_colour_and_camera, check_colour_and_camera
 from cloth_sequence import choose_frames, read_cloth, read_colliders, read_index
 from headless import ensure_display
-from page import PAPER, VIEWS, Image, draw_row, panel_size, save_png
+from page import PAPER, USUAL_VIEWS, VIEWS, Image, Red, draw_row, panel_size, save_png
 from picture_error import OneLineParser, PictureError, exit_code_of
 
 CAMERA_SAMPLES = 24  # frames looked at to place the camera
@@ -23,7 +23,7 @@ def read_arguments(arguments):
     parser.add_argument("folder", metavar="DIR", help="what `apsl run --out DIR` wrote")
     parser.add_argument("--frames", default="all", help="all, last, or numbers and ranges: 0,30,60-90")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="each N-th of those frames only")
-    parser.add_argument("--views", default=",".join(VIEWS), help="panels, of cloth, absolute, normalised")
+    parser.add_argument("--views", default=",".join(USUAL_VIEWS), help="panels, of " + ", ".join(VIEWS))
     parser.add_argument("--normalised", action="store_true", help="short for --views normalised")
     parser.add_argument("--size", default="1380x600", metavar="WxH", help="the picture, pixels")
     parser.add_argument("--out", metavar="DIR", help="folder for the pictures (default: DIR/pictures)")
@@ -80,10 +80,11 @@ def run(arguments):
     window = ClothView(*panel, camera, colliders)
     digits = max(4, len(str(frames[-1].number)))
     for done, frame in enumerate(chosen, start=1):
-        cloth = read_cloth(frame)
+        cloth = read_cloth(frame, with_stretch="stretch" in options.views)
         path = out / f"frame_{frame.number:0{digits}}.png"
         page = Image.new("RGB", options.size, PAPER)
-        draw_row(page, 0, page.height, window, cloth, options.views, options.red, f"frame {frame.number}")
+        draw_row(page, 0, page.height, window, cloth, options.views,
+                 Red(options.red, options.red_stretch), f"frame {frame.number}")
         save_png(page, path)
         show_progress(done, len(chosen), path)
 

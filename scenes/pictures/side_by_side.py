@@ -11,7 +11,7 @@ import numpy as np
 from arguments import add_colour_and_camera, check_colour_and_camera
 from cloth_sequence import choose_frames, read_cloth, read_colliders, read_index
 from headless import ensure_display
-from page import PAPER, VIEWS, Image, draw_row, panel_size, save_png
+from page import PAPER, USUAL_VIEWS, Image, Red, draw_row, panel_size, save_png
 from picture_error import OneLineParser, PictureError, exit_code_of
 
 
@@ -49,14 +49,15 @@ def run(arguments):
     from cloth_view import ClothView, fit_camera
 
     row = (options.width, round(0.38 * options.width))
-    panel = panel_size(row, len(VIEWS))
+    panel = panel_size(row, len(USUAL_VIEWS))
     # One camera for both, or the stretched cloth would be shrunk to the size of the other.
     everything = np.concatenate([cloth.points for cloth in cloths])
     camera = fit_camera(everything, panel[0] / panel[1], options.azimuth, options.elevation, options.zoom)
     window = ClothView(*panel, camera, colliders)
     page = Image.new("RGB", (row[0], 2 * row[1]), PAPER)
     for place, (cloth, frame, title) in enumerate(zip(cloths, frames, options.titles)):
-        draw_row(page, place * row[1], row[1], window, cloth, VIEWS, options.red, f"{title}, frame {frame.number}")
+        draw_row(page, place * row[1], row[1], window, cloth, USUAL_VIEWS,
+                 Red(options.red, options.red_stretch), f"{title}, frame {frame.number}")
     save_png(page, options.out, options.max_bytes)
     print(f"{options.out}: {Path(options.out).stat().st_size / 1000:.0f} kB")
 

@@ -16,6 +16,19 @@ struct EdgeStretch {
 /// Over all edges, at the current positions.
 EdgeStretch edge_stretch(const ClothState& cloth);
 
+/// Least and greatest singular value of a triangle's 3×2 deformation gradient F = [x₁−x₀ x₂−x₀] Dₘ⁻¹, with Dₘ the same
+/// edges at rest in the triangle's own plane. 1 is neither stretched nor compressed.
+struct PrincipalStretch {
+    double min = 1.0;
+    double max = 1.0;
+};
+
+/// Of every triangle, [T]; 1 and 1 where it has no rest area.
+std::vector<PrincipalStretch> principal_stretches(const ClothState& cloth);
+
+/// The least and the greatest of all.
+PrincipalStretch range_of(const std::vector<PrincipalStretch>& stretches);
+
 /// Of |A − A⁰| / A⁰ over the triangles with A⁰ > 0.
 struct AreaChange {
     double max = 0.0;

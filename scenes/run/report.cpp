@@ -37,6 +37,7 @@ nlohmann::ordered_json to_json(const FrameReport& frame) {
                                 {"rms_area_change", frame.rms_area_change},
                                 {"max_edge_stretch", frame.max_edge_stretch},
                                 {"min_edge_stretch", frame.min_edge_stretch},
+                                {"max_principal_stretch", frame.max_principal_stretch},
                                 {"max_speed", frame.max_speed},
                                 {"energy", to_json(frame.energy)},
                                 {"sub_steps", frame.sub_steps},
@@ -56,6 +57,7 @@ nlohmann::ordered_json to_json(const RunSummary& summary) {
                                 {"rms_area_change", summary.rms_area_change},
                                 {"max_edge_stretch", summary.max_edge_stretch},
                                 {"min_edge_stretch", summary.min_edge_stretch},
+                                {"max_principal_stretch", summary.max_principal_stretch},
                                 {"solves", summary.solves},
                                 {"iterations_per_solve", summary.iterations_per_solve},
                                 {"integrator_seconds_per_frame", summary.integrator_seconds_per_frame},
@@ -102,6 +104,7 @@ RunSummary summarize(const std::vector<FrameReport>& frames) {
         squares += frame.rms_area_change * frame.rms_area_change;
         summary.max_edge_stretch = std::max(summary.max_edge_stretch, frame.max_edge_stretch);
         summary.min_edge_stretch = std::min(summary.min_edge_stretch, frame.min_edge_stretch);
+        summary.max_principal_stretch = std::max(summary.max_principal_stretch, frame.max_principal_stretch);
         summary.solves += frame.sub_steps;
         iterations += frame.iterations;
         summary.status = std::max(summary.status, frame.status);

@@ -37,6 +37,7 @@ struct FrameReport {
     double rms_area_change = 0.0;  ///< over triangles and the frame's steps
     double max_edge_stretch = 1.0;
     double min_edge_stretch = 1.0;
+    double max_principal_stretch = 1.0;
     double max_speed = 0.0;  ///< m/s, of the free vertices at the end of the frame
     Energy energy;           ///< at the end of the frame
     std::int64_t sub_steps = 0;
@@ -103,6 +104,7 @@ struct RunSummary {
     double rms_area_change = 0.0;  ///< over triangles and frames
     double max_edge_stretch = 1.0;
     double min_edge_stretch = 1.0;
+    double max_principal_stretch = 1.0;
     std::int64_t solves = 0;
     double iterations_per_solve = 0.0;
     double integrator_seconds_per_frame = 0.0;

@@ -159,6 +159,7 @@ void Simulation::run_step(int step, FrameReport& report) {
     const EdgeStretch stretch = edge_stretch(cloth_);
     report.max_edge_stretch = std::max(report.max_edge_stretch, stretch.max);
     report.min_edge_stretch = std::min(report.min_edge_stretch, stretch.min);
+    report.max_principal_stretch = std::max(report.max_principal_stretch, range_of(principal_stretches(cloth_)).max);
     if (stretch.max > over_stretch_ratio) over_stretch_.measure(cloth_, frame_);
 }
 

@@ -49,6 +49,7 @@ std::string summary_text(const RunReport& report) {
     text += format("  RMS area change        %.3f %%\n", 100.0 * summary.rms_area_change);
     text += format("  edges                  %.2f to %.2f of their rest length\n", summary.min_edge_stretch,
                    summary.max_edge_stretch);
+    text += format("  principal stretch      %.2f at most\n", summary.max_principal_stretch);
     if (report.over_stretch.count > 0) {
         const auto& [worst, why] = report.over_stretch.entries.front();
         text += format(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/vtp_writer.hpp"
 
+#include "pipeline/measures.hpp"
 #include "run/whole_file.hpp"
 
 #include <bit>
@@ -53,6 +54,10 @@ void write_vtp(const std::filesystem::path& file, const ClothState& cloth, std::
     const std::vector<float> velocities(cloth.velocities.begin(), cloth.velocities.end());
     const std::vector<float> changes(area_changes.begin(), area_changes.end());
 
+    std::vector<float> stretches;
+    for (const PrincipalStretch& stretch : principal_stretches(cloth))
+        stretches.push_back(static_cast<float>(stretch.max));
+
     AppendedArrays arrays;
     const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
     std::string text =
@@ -60,7 +65,8 @@ void write_vtp(const std::filesystem::path& file, const ClothState& cloth, std::
         "\" header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"" + std::to_string(topology.vertex_count()) +
         "\" NumberOfPolys=\"" + std::to_string(topology.triangle_count()) + "\">\n";
     text += "<PointData Vectors=\"velocity\">\n" + arrays.add("velocity", "Float32", 3, velocities) + "</PointData>\n";
-    text += "<CellData Scalars=\"area_change\">\n" + arrays.add("area_change", "Float32", 1, changes) + "</CellData>\n";
+    text += "<CellData Scalars=\"area_change\">\n" + arrays.add("area_change", "Float32", 1, changes) +
+            arrays.add("principal_stretch", "Float32", 1, stretches) + "</CellData>\n";
     text += "<Points>\n" + arrays.add("Points", "Float64", 3, cloth.positions) + "</Points>\n";
     text += "<Polys>\n" + arrays.add("connectivity", "Int64", 1, connectivity) +
             arrays.add("offsets", "Int64", 1, offsets) + "</Polys>\n";

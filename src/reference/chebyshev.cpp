@@ -9,9 +9,7 @@
 #include <cmath>
 
 namespace apsl::reference {
-namespace {
 
-/// (Σ λ³²)^(1/32) over the eigenvalues of a symmetric matrix with none below 0: the greatest, or up to 1.04 times that.
 template <class Real>
 Real greatest_eigenvalue(const Eigen::Matrix<Real, 3, 3>& M) {
     const Real scale = M.trace();
@@ -20,8 +18,6 @@ Real greatest_eigenvalue(const Eigen::Matrix<Real, 3, 3>& M) {
     for (int n = 0; n < 4; ++n) power = (power * power).eval();
     return scale * std::pow(power.squaredNorm(), Real(1) / Real(32));
 }
-
-}  // namespace
 
 template <class Real>
 void vertex_bounds(const Topology& topology, std::span<const TriangleGeometry<Real>> geometry,
@@ -60,7 +56,8 @@ void diagonal_bound(const Topology& topology, std::span<const TriangleGeometry<R
 
 template <class Real>
 void chebyshev(const SparseMatrix<Real>& G, const TriangleVector<Real>& bound, const TriangleVector<Real>& b,
-               int products, ChebyshevScratch<Real>& scratch, TriangleVector<Real>& lambda) {
+               int products, ChebyshevScratch<Real>& scratch, TriangleVector<Real>& lambda,
+               std::span<const std::uint8_t> one_sided, bool from_lambda) {
     auto& [inverse_bound, r, step, product] = scratch;
     inverse_bound = bound.cwiseInverse();
     for (Real& inverse : inverse_bound)
@@ -72,18 +69,34 @@ void chebyshev(const SparseMatrix<Real>& G, const TriangleVector<Real>& bound, c
     const Real centre = (Real(1) + low) / Real(2), half_width = (Real(1) - low) / Real(2);
     Real rho = Real(1) / sigma;
     r = b;
+    if (from_lambda) {
+        product.noalias() = G * lambda;
+        r -= product;
+    } else {
+        lambda = TriangleVector<Real>::Zero(b.size());
+    }
+    const auto clamp_step = [&] {
+        for (std::size_t a = 0; a < one_sided.size(); ++a) {
+            const auto n = static_cast<Eigen::Index>(a);
+            if (one_sided[a] != 0 && lambda[n] + step[n] < Real(0)) step[n] = -lambda[n];
+        }
+    };
     step = inverse_bound.cwiseProduct(r) / centre;
-    lambda = step;
+    clamp_step();
+    lambda += step;
     for (int k = 0; k < products; ++k) {
         product.noalias() = G * step;
         r -= product;
         const Real next = Real(1) / (Real(2) * sigma - rho);
         step = (next * rho) * step + (Real(2) * next / half_width) * inverse_bound.cwiseProduct(r);
+        clamp_step();
         lambda += step;
         rho = next;
     }
 }
 
+template double greatest_eigenvalue(const Eigen::Matrix<double, 3, 3>&);
+template float greatest_eigenvalue(const Eigen::Matrix<float, 3, 3>&);
 template void vertex_bounds(const Topology&, std::span<const TriangleGeometry<double>>, std::vector<double>&);
 template void vertex_bounds(const Topology&, std::span<const TriangleGeometry<float>>, std::vector<float>&);
 template void diagonal_bound(const Topology&, std::span<const TriangleGeometry<double>>, std::span<const double>,
@@ -91,8 +104,8 @@ template void diagonal_bound(const Topology&, std::span<const TriangleGeometry<d
 template void diagonal_bound(const Topology&, std::span<const TriangleGeometry<float>>, std::span<const float>,
                              std::span<const float>, TriangleVector<float>&);
 template void chebyshev(const SparseMatrix<double>&, const TriangleVector<double>&, const TriangleVector<double>&, int,
-                        ChebyshevScratch<double>&, TriangleVector<double>&);
+                        ChebyshevScratch<double>&, TriangleVector<double>&, std::span<const std::uint8_t>, bool);
 template void chebyshev(const SparseMatrix<float>&, const TriangleVector<float>&, const TriangleVector<float>&, int,
-                        ChebyshevScratch<float>&, TriangleVector<float>&);
+                        ChebyshevScratch<float>&, TriangleVector<float>&, std::span<const std::uint8_t>, bool);
 
 }  // namespace apsl::reference

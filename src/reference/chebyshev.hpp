@@ -5,15 +5,19 @@
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace apsl::reference {
 
+/// The greatest eigenvalue of a symmetric matrix with none below 0, or up to 1.04 times that: (Σ λ³²)^(1/32).
+template <class Real>
+Real greatest_eigenvalue(const Eigen::Matrix<Real, 3, 3>& M);
+
 /// s, [V]: how far the corner gradients around a vertex point the same way. With J_i the matrix whose rows are the
 /// g_{a,i} of the n triangles around vertex i, J_i J_iᵀ ≼ s_i diag(|g_{a,i}|²); s_i is the greatest eigenvalue of
-/// Σ_{a∋i} ĝ ĝᵀ, ĝ = g/|g|, between n/3 and n. Taken for it is the 32nd root of the sum of the eigenvalues' 32nd
-/// powers, up to 1.04 times as much. A gradient without a direction may get any, and adds 1.
+/// Σ_{a∋i} ĝ ĝᵀ, ĝ = g/|g|, between n/3 and n. A gradient without a direction may get any, and adds 1.
 template <class Real>
 void vertex_bounds(const Topology& topology, std::span<const TriangleGeometry<Real>> geometry,
                    std::vector<Real>& bounds);
@@ -35,8 +39,14 @@ struct ChebyshevScratch {
 /// λ = q(B⁻¹G) B⁻¹b with 1 − x q(x) the Chebyshev polynomial of degree `products` + 1 that is 1 at x = 0 and within
 /// ±1/3 on as much of [0, 1] as can be, up to 1 (Saad 2003, Iterative Methods for Sparse Linear Systems,
 /// Algorithm 12.1). Rows of B = 0 stay at 0.
+///
+/// λ never goes below 0 in the rows where `one_sided` [T] is not 0 (empty: in none is it). What is cut off is not in
+/// the step either: the residual stays exact, and the row begins anew. With `from_lambda` the polynomial goes on from
+/// the λ given, at the price of a product. Repeated so, λ goes to the solution of the complementarity problem λ ≥ 0,
+/// Gλ ≥ b, λ (Gλ − b) = 0 in those rows and Gλ = b in the others.
 template <class Real>
 void chebyshev(const SparseMatrix<Real>& G, const TriangleVector<Real>& bound, const TriangleVector<Real>& b,
-               int products, ChebyshevScratch<Real>& scratch, TriangleVector<Real>& lambda);
+               int products, ChebyshevScratch<Real>& scratch, TriangleVector<Real>& lambda,
+               std::span<const std::uint8_t> one_sided = {}, bool from_lambda = false);
 
 }  // namespace apsl::reference

@@ -54,6 +54,12 @@ class Frames(unittest.TestCase):
             self.assertAlmostEqual(changes.max(), frame["max_area_change"], delta=1e-6)
             self.assertAlmostEqual(np.sqrt((changes.astype(float) ** 2).mean()), frame["rms_area_change"], delta=1e-6)
 
+    def test_greatest_principal_stretch_of_the_cells_is_the_report_s(self):
+        for k in range(FRAMES):
+            stretches = vtk_to_numpy(self.read(f"frame_{k:04}.vtp").GetCellData().GetArray("principal_stretch"))
+            self.assertEqual(len(stretches), self.report["triangles"])
+            self.assertAlmostEqual(stretches.max(), self.report["frames"][k]["max_principal_stretch"], delta=1e-6)
+
     def test_points_are_the_point_cache_s_and_move_by_their_velocities(self):
         cache = (self.folder / "cloth.pc2").read_bytes()
         samples = np.frombuffer(cache, np.float32, offset=32).reshape(FRAMES, self.report["vertices"], 3)

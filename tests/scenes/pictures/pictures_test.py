@@ -83,6 +83,13 @@ class Render(Folder):
         self.assertGreater(share_of(left, is_white), 0.95)
         self.assertGreater(share_of(right, is_red), 0.95)
 
+    def test_stretch_is_coloured_from_1_to_the_stated_stretch(self):
+        cloth = write_sequence(self.folder / "run", frames=1, stretched=0.10)
+        image = self.picture(cloth, "--views", "stretch", "--red-stretch", "1.1", "--size", "600x480", *FRONT)
+        left, right = image[100:350, 160:290], image[100:350, 310:440]
+        self.assertGreater(share_of(left, is_red), 0.95)
+        self.assertGreater(share_of(right, is_white), 0.95)
+
     def test_half_the_stated_change_is_half_way_to_red(self):
         cloth = write_sequence(self.folder / "run", frames=1, stretched=0.05)
         image = self.picture(cloth, "--views", "absolute", "--red", "0.10", "--size", "600x480", *FRONT)
@@ -185,10 +192,12 @@ class RenderErrors(Folder):
         cloth = write_sequence(self.folder / "run", frames=1)
         write_frame(cloth / "cloth_0000.vtp", np.eye(3), [(0, 1, 2)], None)
         self.assert_one_line_error(run(RENDER, cloth), "cloth_0000.vtp", "area_change")
+        write_frame(cloth / "cloth_0000.vtp", np.eye(3), [(0, 1, 2)], [0.0])
+        self.assert_one_line_error(run(RENDER, cloth, "--views", "stretch"), "cloth_0000.vtp", "principal_stretch")
 
     def test_wrong_arguments(self):
         cloth = write_sequence(self.folder / "run", frames=1)
-        for arguments in (["--red", "0"], ["--red", "nan"], ["--size", "10x10"], ["--every", "0"], ["--frames", "x"],
+        for arguments in (["--red-stretch", "1"], ["--red", "0"], ["--red", "nan"], ["--size", "10x10"], ["--every", "0"], ["--frames", "x"],
                           ["--views", "side"], ["--elevation", "90"], ["--zoom", "0"], ["--bogus"], ["--red", "much"]):
             with self.subTest(arguments=arguments):
                 self.assert_one_line_error(run(RENDER, cloth, *arguments), arguments[0])

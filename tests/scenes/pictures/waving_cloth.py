@@ -23,7 +23,7 @@ def grid_triangles(columns, rows):
     return triangles
 
 
-def write_frame(path, points, triangles, area_change):
+def write_frame(path, points, triangles, area_change, stretch=None):
     positions = vtkPoints()
     positions.SetData(numpy_to_vtk(np.ascontiguousarray(points, np.float32), deep=True))
     cells = vtkCellArray()
@@ -32,10 +32,11 @@ def write_frame(path, points, triangles, area_change):
     surface = vtkPolyData()
     surface.SetPoints(positions)
     surface.SetPolys(cells)
-    if area_change is not None:
-        values = numpy_to_vtk(np.ascontiguousarray(area_change, np.float32), deep=True)
-        values.SetName("area_change")
-        surface.GetCellData().AddArray(values)
+    for name, of_triangles in (("area_change", area_change), ("principal_stretch", stretch)):
+        if of_triangles is not None:
+            values = numpy_to_vtk(np.ascontiguousarray(of_triangles, np.float32), deep=True)
+            values.SetName(name)
+            surface.GetCellData().AddArray(values)
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(str(path))
     writer.SetInputData(surface)
@@ -63,7 +64,9 @@ def write_sequence(folder, frames=3, side=17, stretched=0.25, wave=0.06, scene=N
         middles = points[np.array(triangles)].mean(axis=1)
         area_change = np.where(middles[:, 0] < 0.0, 0.0, stretched)
         names.append(f"cloth_{frame:04}.vtp")
-        write_frame(folder / names[-1], points, triangles, area_change)
+        # Stretched left of the middle, where the areas are at rest.
+        stretch = np.where(middles[:, 0] < 0.0, 1.0 + stretched, 1.0)
+        write_frame(folder / names[-1], points, triangles, area_change, stretch)
     write_index(folder, names)
     report = {"scene": str(scene) if scene else "made_up.json", "frames": [], "summary": {"status": "ok"}}
     (folder / "report.json").write_text(json.dumps(report))

@@ -53,3 +53,35 @@ TEST_CASE("measures: a number that is not finite shows in the summary") {
     CHECK(std::isnan(summarize(cloth, area_changes(cloth)).max));
     CHECK(std::isnan(summarize(cloth, area_changes(cloth)).rms));
 }
+
+TEST_CASE("principal stretches of known deformations") {
+    const std::vector<Triangle> triangles{{0, 1, 2}};  // right, with legs of 1 m and 2 m
+    const std::vector<double> rest{0, 0, 0, 1, 0, 0, 0, 2, 0};
+    ClothState cloth = make_cloth_state(Topology::build(triangles, 3), rest, 3.0, {});
+    const auto principal_stretch = [](const ClothState& state) { return range_of(principal_stretches(state)); };
+    SECTION("rest, turned and moved") {
+        cloth.positions = {5, 5, 5, 5, 5, 6, 5, 7, 5};
+        CHECK(principal_stretch(cloth).min == Approx(1.0));
+        CHECK(principal_stretch(cloth).max == Approx(1.0));
+    }
+    SECTION("along the axes") {
+        cloth.positions = {0, 0, 0, 3, 0, 0, 0, 1, 0};
+        CHECK(principal_stretch(cloth).min == Approx(0.5));
+        CHECK(principal_stretch(cloth).max == Approx(3.0));
+    }
+    SECTION("simple shear by 1: the golden ratio and its inverse, with edges that show neither") {
+        cloth.positions = {0, 0, 0, 1, 0, 0, 2, 2, 0};
+        const double golden = 0.5 * (1.0 + std::sqrt(5.0));
+        CHECK(principal_stretch(cloth).min == Approx(1.0 / golden));
+        CHECK(principal_stretch(cloth).max == Approx(golden));
+    }
+    SECTION("collapsed to a line") {
+        cloth.positions = {0, 0, 0, 1, 0, 0, 2, 0, 0};
+        CHECK(principal_stretch(cloth).min == Approx(0.0).margin(1e-7));
+    }
+    SECTION("a triangle without a rest area counts as not stretched") {
+        cloth.rest_areas = {0.0};
+        cloth.positions = {0, 0, 0, 3, 0, 0, 0, 1, 0};
+        CHECK(principal_stretch(cloth).max == 1.0);
+    }
+}

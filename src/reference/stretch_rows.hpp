@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "reference/conjugate_gradient.hpp"
+#include "reference/geometry.hpp"
+#include "reference/matrix.hpp"
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace apsl::reference {
+
+template <class Real>
+using Vector2 = Eigen::Matrix<Real, 2, 1>;
+
+/// A triangle at rest, in its own plane with the first edge along x: the gradients b_k of its three shape functions,
+/// 1/m. The deformation gradient is F = Σ_k x_k b_kᵀ (3×2), and b_0 + b_1 + b_2 = 0. All zero where the triangle has no
+/// area.
+template <class Real>
+using RestShape = std::array<Vector2<Real>, 3>;
+
+template <class Real>
+RestShape<Real> rest_shape(const Triangle& triangle, std::span<const Real> rest_positions);
+
+/// The greatest singular value of F and its directions: F `material` = `value` · `spatial`. Where both singular values
+/// are alike, the direction is that of the rest shape's x.
+template <class Real>
+struct PrincipalStretch {
+    Real value;              ///< s₁, 1 at rest
+    Vector2<Real> material;  ///< v₁, in the rest shape's plane, of length 1
+    Vector3<Real> spatial;   ///< u₁, of length 1; zero where s₁ is
+};
+
+template <class Real>
+PrincipalStretch<Real> principal_stretch(const RestShape<Real>& shape, const Triangle& triangle,
+                                         std::span<const Real> positions);
+
+/// One linearised condition on a triangle: its value C and ∂C/∂x of each corner.
+template <class Real>
+struct ConstraintRow {
+    Real value;
+    std::array<Vector3<Real>, 3> gradients;
+};
+
+/// C = A − A⁰, m²; ∂C/∂x_k = ½ g_k.
+template <class Real>
+ConstraintRow<Real> area_row(const TriangleGeometry<Real>& geometry, Real rest_area);
+
+/// C = A⁰ (s₁ − ceiling), m², which is to end at or below 0; ∂C/∂x_k = A⁰ (v₁·b_k) u₁. s₁ is convex in F, and v₁ may
+/// turn freely: shear within the ceiling meets no resistance.
+template <class Real>
+ConstraintRow<Real> stretch_row(const RestShape<Real>& shape, const Triangle& triangle, std::span<const Real> positions,
+                                Real rest_area, Real ceiling);
+
+/// `row` less r times `other`, r = ⟨∇row, ∇other⟩ / ⟨∇other, ∇other⟩ in the metric of the corners' inverse masses: what
+/// `row` demands beyond `other`. Solving with the pair (other, the result) in place of (other, row) gives the same
+/// displacements and the same multiplier of `row`. `row` itself where `other` moves nothing.
+template <class Real>
+ConstraintRow<Real> orthogonalized(const ConstraintRow<Real>& row, const ConstraintRow<Real>& other,
+                                   const std::array<Real, 3>& inverse_masses);
+
+/// Conditions J Δx = −b on the coordinates of all vertices. A row is divided by √D, D = Σ_k w_k |∇C_k|², so that
+/// J W Jᵀ has ones on its diagonal; a row with D = 0 is zero. With J W Jᵀ y = b the displacement is Δx = −W Jᵀ y and
+/// the multiplier of the row itself y / √D.
+template <class Real>
+struct RowSystem {
+    SparseMatrix<Real> J;        ///< [R, 3V]
+    TriangleVector<Real> b;      ///< [R]
+    TriangleVector<Real> scale;  ///< √D, [R]
+};
+
+/// `rows` [R] on the triangles `owners` [R].
+template <class Real>
+RowSystem<Real> row_system(const Topology& topology, std::span<const ConstraintRow<Real>> rows,
+                           std::span<const std::uint32_t> owners, std::span<const Real> inverse_masses);
+
+/// J W Jᵀ, [R, R].
+template <class Real>
+SparseMatrix<Real> row_matrix(const RowSystem<Real>& system, std::span<const Real> inverse_masses);
+
+/// B, [R], with J W Jᵀ ≼ diag(B): J W Jᵀ is a sum over vertices of w_i J_i J_iᵀ, J_i the columns of vertex i, so B_r is
+/// the sum over the row's corners of the greatest eigenvalue of w_i J_iᵀ J_i (as in vertex_bounds).
+template <class Real>
+TriangleVector<Real> row_bound(const RowSystem<Real>& system, std::span<const Real> inverse_masses);
+
+}  // namespace apsl::reference
