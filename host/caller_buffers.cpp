@@ -4,6 +4,8 @@
 #include "caller_objects.hpp"
 #include "invalid.hpp"
 
+#include <cstdint>
+#include <cstdlib>
 #include <string>
 
 namespace apsl::host {
@@ -12,6 +14,23 @@ namespace {
 // Floats from the first number of the first vertex to the last of the last.
 std::size_t vector_extent(std::size_t vertices, std::uint32_t stride, std::uint32_t component_stride) {
     return (vertices - 1) * stride + std::size_t{2} * component_stride + 1;
+}
+
+// Vertices of both may alternate in one buffer, but no float belongs to both. Looked at where the strides are alike;
+// two sub-buffers of one buffer are taken to be apart.
+void check_velocities_apart(const Buffers& buffers, const Options& options, std::size_t vertices) {
+    if (buffers.velocities.buffer != buffers.positions.buffer || options.velocity_stride != options.position_stride ||
+        options.velocity_component_stride != options.position_component_stride)
+        return;
+    const auto floats = [](const BufferView& view) { return static_cast<std::int64_t>(view.offset / sizeof(float)); };
+    const std::int64_t apart = floats(buffers.velocities) - floats(buffers.positions);
+    const std::int64_t stride = options.position_stride, component_stride = options.position_component_stride;
+    for (std::int64_t components = -2; components <= 2; ++components) {
+        const std::int64_t rest = apart - components * component_stride;
+        if (rest % stride == 0 && std::abs(rest / stride) < static_cast<std::int64_t>(vertices))
+            invalid("buffers.velocities overlaps buffers.positions: both begin in one buffer, " +
+                    std::to_string(apart) + " floats apart");
+    }
 }
 
 }  // namespace
@@ -26,12 +45,14 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
     };
     check(buffers.positions, position_floats(options, counts),
           options.positions_only ? Access::read_and_write : Access::read, "buffers.positions");
-    if (!options.positions_only)
+    if (!options.positions_only) {
         check(buffers.velocities,
               vector_extent(counts.vertices, options.velocity_stride, options.velocity_component_stride),
               Access::read_and_write, "buffers.velocities");
-    else if (buffers.velocities.buffer)
+        check_velocities_apart(buffers, options, counts.vertices);
+    } else if (buffers.velocities.buffer) {
         invalid("buffers.velocities is given, but Options::positions_only is on");
+    }
     check(buffers.inverse_masses, (counts.vertices - 1) * options.inverse_mass_stride + 1, Access::read,
           "buffers.inverse_masses");
     check(buffers.rest_areas, counts.triangles, Access::read, "buffers.rest_areas");

@@ -22,7 +22,7 @@ APSLK_INLINE bool begin_iteration(__global const apslk_parameters* parameters, _
     const float residual = sum_partials(partials, APSLK_PARTIAL_RESIDUAL_EVEN + slot, groups, scratch);
     const float scaled_residual = sum_partials(partials, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN + slot, groups, scratch);
     const bool iterating = !states[c].stopped && iteration < parameters[c].max_iterations &&
-                           residual > parameters[c].tolerance_squared * states[c].initial_residual;
+                           residual > parameters[c].tolerance_squared * states[c].initial_squared_residual;
     if (get_group_id(0) == 0 && get_local_id(0) == 0) {
         states[c].iterating = iterating ? 1 : 0;
         states[c].scaled_residual[slot] = scaled_residual;

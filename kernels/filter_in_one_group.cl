@@ -73,7 +73,7 @@ APSLK_KERNEL void filter_in_one_group(
         apslk_solve solve = begin_solve_in_group(group_sum(sum_of_lanes(sums.squares), scratch),
                                                  group_sum(sum_of_lanes(sums.scaled_squares), scratch));
         const bool broken =
-            stats->status == APSLK_STATUS_DIVERGED || not_finite > 0.0f || !isfinite(solve.initial_residual);
+            stats->status == APSLK_STATUS_DIVERGED || not_finite > 0.0f || !isfinite(solve.initial_squared_residual);
         capped_rms = change.capped_rms;
         const bool on_the_way = started && sub_steps < small_step_count(parameters[c]);
         going_on = !broken && sub_steps < parameters[c].sub_steps &&
@@ -116,15 +116,16 @@ APSLK_KERNEL void filter_in_one_group(
                                  motion, total_correction);
             else
                 displace_vertices(cloths[c], solved, corner_offsets, corners, gradients, pressure, moved);
-            const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_residual;
+            const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_squared_residual;
             if (get_local_id(0) == 0) {
                 states[c].adaptive_factor =
                     adapted_factor(states[c].adaptive_factor, parameters[c], solve.iterations, met);
                 // The product with a guess costs as much.
                 stats->iterations += solve.iterations + (APSLK_WARM_START_SUB_STEPS > 0 ? 1 : 0);
                 if (!met) stats->status = APSLK_STATUS_NOT_CONVERGED;
-                if (solve.initial_residual > 0.0f)
-                    stats->residual = fmax(stats->residual, relative_residual(solve.residual, solve.initial_residual));
+                if (solve.initial_squared_residual > 0.0f)
+                    stats->residual =
+                        fmax(stats->residual, relative_residual(solve.residual, solve.initial_squared_residual));
             }
             sub_steps += 1;
         }

@@ -22,7 +22,7 @@ APSLK_KERNEL void finish_solve(__global const apslk_cloth* cloths, __global cons
     const bool unfinished = !states[c].stopped && states[c].solve_iterations == iterations;
     apslk_solve solve;
     solve.iterations = states[c].solve_iterations;
-    solve.initial_residual = states[c].initial_residual;
+    solve.initial_squared_residual = states[c].initial_squared_residual;
     solve.residual = sum_partials(partials, APSLK_PARTIAL_RESIDUAL_EVEN, groups, scratch);
     solve.scaled_residual = sum_partials(partials, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN, groups, scratch);
     solve.previous_scaled_residual = states[c].scaled_residual[1];

@@ -21,7 +21,7 @@ APSLK_KERNEL void gather_displacements(__global const apslk_cloth* cloths, __glo
                                        __global float4* total_correction, int sub_step, uint slot) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const float initial = states[c].initial_residual;
+    const float initial = states[c].initial_squared_residual;
     // A right-hand side of zero does no iteration, and then, unless a guess was scaled by 0, no pressure is there to
     // read.
     const bool solved = APSLK_WARM_START_SUB_STEPS > 0 || states[c].solve_iterations > 0;

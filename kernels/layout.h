@@ -84,18 +84,18 @@ typedef struct {
 
 // Where a cloth's solve stands. Each field is written by one work-group in a launch that does not read it elsewhere.
 typedef struct {
-    apslk_int stopped;           // no further sub-step in this call
-    apslk_int discarded;         // the call did nothing, or worse: velocities stay
-    apslk_int iterating;         // this CG iteration does its work
-    float initial_residual;      // ‖b‖², m⁴
-    float scaled_residual[2];    // γ = r̄·r̄ with r̄ = r/√(α diag G), of even and of odd iterations
-    float step[2];               // CG step length, of even and of odd iterations
-    apslk_int solve_iterations;  // done in the present solve; at 0 there is no pressure to read
-    float adaptive_factor;       // ≥ 1, multiplies α − 1; outlives the call
-    float initial_capped_rms;    // RMS area change at x̃ + Δt ṽ, each triangle's counted as at most 1
-    float greatest_mass;         // of what a vertex may effectively weigh, kg
-    float extent;                // greatest |coordinate|, m; kept by filter_in_one_group alone
-    float measured;              // Σ A⁰, m²; likewise
+    apslk_int stopped;               // no further sub-step in this call
+    apslk_int discarded;             // the call did nothing, or worse: velocities stay
+    apslk_int iterating;             // this CG iteration does its work
+    float initial_squared_residual;  // ‖b‖², m⁴
+    float scaled_residual[2];        // γ = r̄·r̄ with r̄ = r/√(α diag G), of even and of odd iterations
+    float step[2];                   // CG step length, of even and of odd iterations
+    apslk_int solve_iterations;      // done in the present solve; at 0 there is no pressure to read
+    float adaptive_factor;           // ≥ 1, multiplies α − 1; outlives the call
+    float initial_capped_rms;        // RMS area change at x̃ + Δt ṽ, each triangle's counted as at most 1
+    float greatest_mass;             // of what a vertex may effectively weigh, kg
+    float extent;                    // greatest |coordinate|, m; kept by filter_in_one_group alone
+    float measured;                  // Σ A⁰, m²; likewise
 } apslk_solve_state;
 
 // Partial results of the work-groups of a launch, one float a group for each of these.

@@ -25,7 +25,7 @@ APSLK_KERNEL void predict_positions(__global const apslk_cloth* cloths, __global
         states[c].stopped = !parameters[c].enabled;
         states[c].discarded = 0;
         states[c].iterating = 0;
-        states[c].initial_residual = 0.0f;
+        states[c].initial_squared_residual = 0.0f;
         const int status = parameters[c].enabled ? APSLK_STATUS_OK : APSLK_STATUS_OFF;
         stats[c] = (apslk_stats){0, 0, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, status, APSLK_OFFENDER_NONE, 0, 0, 0.0f};
     }

@@ -51,7 +51,7 @@ APSLK_KERNEL void begin_solve(__global const apslk_parameters* parameters, __glo
         states[c].stopped = 1;
     } else {
         states[c].solve_iterations = 0;
-        states[c].initial_residual = residual;
+        states[c].initial_squared_residual = residual;
         stats[c].sub_steps += 1;
     }
 }

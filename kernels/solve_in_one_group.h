@@ -13,9 +13,9 @@
 // A solve under way; the same in every work-item of the group.
 typedef struct {
     int iterations;
-    float initial_residual;  // ‖b‖², m⁴
-    float residual;          // ‖r‖², m⁴
-    float scaled_residual;   // r̄·r̄
+    float initial_squared_residual;  // ‖b‖², m⁴
+    float residual;                  // ‖r‖², m⁴
+    float scaled_residual;           // r̄·r̄
     float previous_scaled_residual;
     float previous_step;
 } apslk_solve;
@@ -38,7 +38,7 @@ APSLK_INLINE void iterate_in_group(apslk_solve* solve, bool guessing, __global c
                                    __global float* pressure, __local float4* forces, __local float* scratch) {
     bool going_on = true;  // uniform, as is guessing
     while (guessing || (going_on && solve->iterations < parameters->max_iterations &&
-                        solve->residual > parameters->tolerance_squared * solve->initial_residual)) {
+                        solve->residual > parameters->tolerance_squared * solve->initial_squared_residual)) {
         const float curvature =
             group_sum(multiply_patches(*cloth, true, patches, patch_vertices, local_triangles, corner_offsets, corners,
                                        gradients, guessing ? pressure : residual, product, forces),

@@ -134,19 +134,19 @@ class KernelFolder(unittest.TestCase):
         self.assertFalse(self.budget.exists())
 
     def test_a_kernel_that_no_variant_compiles(self):
-        self.add("hidden.cl", "#define APSL_NEVER 0\n"
-                              "#if APSL_NEVER\n"
+        self.add("hidden.cl", "#define APSLK_NEVER 0\n"
+                              "#if APSLK_NEVER\n"
                               "__kernel void hidden(__global float* v) { v[0] = 1; }\n"
                               "#endif\n"
                               "__kernel void seen(__global float* v) { v[0] = 1; }\n")
         self.assert_refused("hidden.cl:hidden: coverage:", "--update-budget")
 
     def test_a_define_without_values(self):
-        self.add("new_define.cl", "#ifndef APSL_NEW\n"
-                                  "#define APSL_NEW 1\n"
+        self.add("new_define.cl", "#ifndef APSLK_NEW\n"
+                                  "#define APSLK_NEW 1\n"
                                   "#endif\n"
-                                  "__kernel void k(__global float* v) { v[0] = APSL_NEW; }\n")
-        self.assert_refused("new_define.cl reads APSL_NEW")
+                                  "__kernel void k(__global float* v) { v[0] = APSLK_NEW; }\n")
+        self.assert_refused("new_define.cl reads APSLK_NEW")
 
     def test_a_table_out_of_date(self):
         self.add("accepted.cl")
@@ -165,7 +165,7 @@ class Variants(unittest.TestCase):
     def test_a_file_is_compiled_with_the_defines_it_reads_through_its_includes(self):
         with tempfile.TemporaryDirectory() as folder:
             kernels = Path(folder)
-            (kernels / "a.h").write_text("#ifndef APSL_A_H\n#define APSL_A_H\n#if APSLK_WORK_GROUP_SIZE > 64\n#endif\n"
+            (kernels / "a.h").write_text("#ifndef APSLK_A_H\n#define APSLK_A_H\n#if APSLK_WORK_GROUP_SIZE > 64\n#endif\n"
                                          "#ifndef APSLK_MATRIX\n#define APSLK_MATRIX 0\n#endif\n#endif\n")
             (kernels / "free.cl").write_text('#include "a.h"\n')
             (kernels / "fixed.cl").write_text('#define APSLK_MATRIX 1\n#include "a.h"\n')

@@ -95,7 +95,7 @@ def defines_read_by(source):
     """Names that preprocessor conditions of a file and its includes ask for and that nothing there fixes."""
     text = _text_with_includes(source, set())
     fixed = set(_DEFINITION.findall(_DEFAULT.sub("", text)))
-    asked = {name for condition in _CONDITION.findall(text) for name in re.findall(r"\bAPSL_\w+", condition)}
+    asked = {name for condition in _CONDITION.findall(text) for name in re.findall(r"\bAPSLK_\w+", condition)}
     return sorted(asked - fixed)
 
 

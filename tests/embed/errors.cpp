@@ -94,6 +94,30 @@ TEST_CASE("enqueue refuses parameters out of range, and queues nothing", "[embed
     CHECK(same_bytes(buffers.read_velocities(), CallerBuffers({&cloth(), 1}, {}).read_velocities()));
 }
 
+TEST_CASE("enqueue refuses velocities that share floats with the positions, and takes those that alternate",
+          "[embed]") {
+    const std::size_t vertices = cloth().topology->vertex_count();
+    const DeviceArray<float> both(std::vector<float>(12 * vertices));
+    const CallerBuffers others({&cloth(), 1}, {});
+    const Owned<cl_command_queue> queue = in_order_queue();
+    // The velocities' first float behind that of the positions; strides of 3 or 6.
+    const auto enqueue = [&](std::size_t floats, std::uint32_t stride) {
+        StrainLimiter made = limiter({.position_stride = stride, .velocity_stride = stride});
+        Buffers views = others.views();
+        views.positions = {both.get(), 0};
+        views.velocities = {both.get(), 4 * floats};
+        const cl_event done = made.enqueue(queue.get(), views, Parameters{});
+        clWaitForEvents(1, &done);
+        clReleaseEvent(done);
+    };
+    for (const std::size_t floats : {std::size_t{0}, std::size_t{2}, std::size_t{3}, 3 * vertices - 1})
+        check_invalid("buffers.velocities overlaps buffers.positions", [&] { enqueue(floats, 3); });
+    for (const std::size_t floats : {std::size_t{2}, std::size_t{4}, std::size_t{6}})
+        check_invalid("buffers.velocities overlaps buffers.positions", [&] { enqueue(floats, 6); });
+    enqueue(3 * vertices, 3);
+    enqueue(3, 6);
+}
+
 TEST_CASE("enqueue refuses buffers it cannot use, names them, and queues nothing", "[embed]") {
     const Options options{.regularization_per_triangle = true};
     StrainLimiter made = limiter(options);

@@ -60,7 +60,7 @@ std::vector<apslk_solve_state> fresh_states(std::span<const ScaledSolve> solves)
         state.stopped = 0;
         state.discarded = 0;
         state.iterating = 1;
-        state.initial_residual = static_cast<float>(squared_norm(solve, solve.right_hand_side));
+        state.initial_squared_residual = static_cast<float>(squared_norm(solve, solve.right_hand_side));
         state.solve_iterations = 0;
         state.adaptive_factor = 1.0f;
         states.push_back(state);

@@ -71,7 +71,7 @@ TEST_CASE("finish_solve: goes on exactly where queued iterations ended", "[finis
                 CAPTURE(c);
                 const int iterations = finished.states.read()[c].solve_iterations;
                 const double initial = norm(finished.solves[c].right_hand_side);
-                const double plain_initial = std::sqrt(finished.states.read()[c].initial_residual);
+                const double plain_initial = std::sqrt(finished.states.read()[c].initial_squared_residual);
                 CHECK(iterations > (c < 2 ? queued : 0));
                 CHECK(iterations < 60);
                 // Sums are grouped otherwise: rounding may bring the end an iteration forward or back.
@@ -109,7 +109,7 @@ TEST_CASE("finish_solve: two iterations are the two that cg_update would have do
         check_near(&Arrays::pressure, "pressure");
         check_near(&Arrays::direction, "direction");
         CHECK(std::abs(residual_left(finished, 0) - residual_left(queued_on, 0)) <=
-              elementwise_tolerance(60) * std::sqrt(finished.states.read()[0].initial_residual));
+              elementwise_tolerance(60) * std::sqrt(finished.states.read()[0].initial_squared_residual));
     }
 }
 

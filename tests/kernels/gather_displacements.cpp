@@ -106,7 +106,7 @@ TEST_CASE("gather_displacements: keeps the greatest residual and says where the 
     const std::vector<Cloth> cloths{make_cloth(strip(100), 1)};
     Arrays arrays(cloths, Matrix::consistent, {.regularization = 1.2f, .sub_steps = 10, .tolerance = 0.1f}, 3);
     with_pressure(arrays);
-    arrays.edit_states([](apslk_solve_state& state) { state.initial_residual = 100.0f; });
+    arrays.edit_states([](apslk_solve_state& state) { state.initial_squared_residual = 100.0f; });
     const auto end_with = [&](const std::vector<double>& residual_squared) {
         arrays.write_partials(0, APSLK_PARTIAL_RESIDUAL_ODD, residual_squared);
         launch::gather_displacements(arrays, {}, 1);
@@ -130,7 +130,7 @@ TEST_CASE("gather_displacements: counts iterations and adapts alpha's factor", "
     with_pressure(arrays);
     const auto factor_after = [&](float factor, int iterations, double relative_residual) {
         arrays.edit_states([&](apslk_solve_state& state) {
-            state.initial_residual = 1.0f;
+            state.initial_squared_residual = 1.0f;
             state.adaptive_factor = factor;
             state.solve_iterations = iterations;
         });

@@ -148,7 +148,7 @@ TEST_CASE("csr_spmv_dot and matrix_free_apply_dot: nothing is written once stopp
             check_idle(stopped, 0);
 
             Arrays converged(cloths, matrix, {.tolerance = 0.1f}, 2);
-            const double initial = static_cast<double>(converged.states.read()[0].initial_residual);
+            const double initial = static_cast<double>(converged.states.read()[0].initial_squared_residual);
             converged.write_partial_sum(0, APSLK_PARTIAL_RESIDUAL_ODD, 0.0099 * initial);
             check_idle(converged, 1);
 

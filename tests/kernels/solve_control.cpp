@@ -38,7 +38,7 @@ TEST_CASE("begin_solve: begins a sub-step with the sum of the residual's parts",
         reported.arrays.edit_states([](apslk_solve_state& state) { state.solve_iterations = 7; });
         launch::begin_solve(reported.arrays, {.work_group_size = group}, 1);
         CHECK(reported.state().stopped == 0);
-        CHECK(reported.state().initial_residual == 15.0f);
+        CHECK(reported.state().initial_squared_residual == 15.0f);
         CHECK(reported.state().solve_iterations == 0);
         CHECK(reported.stats().sub_steps == 1);
         CHECK(reported.stats().status == APSLK_STATUS_OK);
