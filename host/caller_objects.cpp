@@ -2,7 +2,7 @@
 #include "caller_objects.hpp"
 
 #include "invalid.hpp"
-#include "opencl_error.hpp"
+#include "opencl_info.hpp"
 
 #include <apsl/error.hpp>
 
@@ -17,15 +17,6 @@ using apsl::invalid;
 
 [[noreturn]] void invalid(const char* name, const std::string& what) {
     invalid(std::string(name) + ' ' + what);
-}
-
-/// One of OpenCL's clGet…Info.
-template <class Value, class Object>
-Value info(cl_int(CL_API_CALL* query)(Object, cl_uint, std::size_t, void*, std::size_t*), Object object, cl_uint what,
-           const char* doing) {
-    Value value{};
-    check(query(object, what, sizeof value, &value, nullptr), doing);
-    return value;
 }
 
 template <class Value>

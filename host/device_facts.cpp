@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "device_facts.hpp"
 
-#include "opencl_error.hpp"
+#include "opencl_info.hpp"
 
 #include <apsl/error.hpp>
 
@@ -12,25 +12,14 @@ namespace {
 
 template <class Value>
 Value fact(cl_device_id device, cl_device_info what, const char* doing) {
-    Value value{};
-    check(clGetDeviceInfo(device, what, sizeof value, &value, nullptr), doing);
-    return value;
-}
-
-std::string text_fact(cl_device_id device, cl_device_info what, const char* doing) {
-    std::size_t size = 0;
-    check(clGetDeviceInfo(device, what, 0, nullptr, &size), doing);
-    std::string text(size, '\0');
-    check(clGetDeviceInfo(device, what, size, text.data(), nullptr), doing);
-    while (!text.empty() && text.back() == '\0') text.pop_back();
-    return text;
+    return info<Value>(clGetDeviceInfo, device, what, doing);
 }
 
 }  // namespace
 
 DeviceFacts device_facts(cl_device_id device) {
     DeviceFacts facts;
-    facts.name = text_fact(device, CL_DEVICE_NAME, "asking the device for its name");
+    facts.name = info_text(clGetDeviceInfo, device, CL_DEVICE_NAME, "asking the device for its name");
     facts.is_cpu =
         (fact<cl_device_type>(device, CL_DEVICE_TYPE, "asking the device for its type") & CL_DEVICE_TYPE_CPU) != 0;
     facts.compute_units = fact<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS, "asking the device for its compute units");
@@ -47,7 +36,8 @@ DeviceFacts device_facts(cl_device_id device) {
     require(fact<cl_bool>(device, CL_DEVICE_ENDIAN_LITTLE, "asking the device for its byte order"),
             "is big-endian, expected little-endian");
     int major = 0, minor = 0;
-    const std::string version = text_fact(device, CL_DEVICE_VERSION, "asking the device for its version");
+    const std::string version =
+        info_text(clGetDeviceInfo, device, CL_DEVICE_VERSION, "asking the device for its version");
     std::sscanf(version.c_str(), "OpenCL %d.%d", &major, &minor);
     if (major * 10 + minor < 12)
         throw Error(ErrorCode::unsupported, "device " + facts.name + " offers " + version + ", expected OpenCL 1.2");

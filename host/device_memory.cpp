@@ -2,7 +2,7 @@
 #include "device_memory.hpp"
 
 #include "caller_objects.hpp"
-#include "opencl_error.hpp"
+#include "opencl_info.hpp"
 
 #include <apsl/error.hpp>
 
@@ -14,10 +14,9 @@ std::size_t round_up(std::size_t size, std::size_t alignment) {
 }
 
 std::size_t sub_buffer_alignment(cl_device_id device) {
-    cl_uint bits = 0;
-    check(clGetDeviceInfo(device, CL_DEVICE_MEM_BASE_ADDR_ALIGN, sizeof bits, &bits, nullptr),
-          "asking the device for its alignment");
-    return bits / 8;
+    return info<cl_uint>(clGetDeviceInfo, device, CL_DEVICE_MEM_BASE_ADDR_ALIGN,
+                         "asking the device for its alignment") /
+           8;
 }
 
 }  // namespace

@@ -1,30 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "opencl_devices.hpp"
 
-#include "opencl_error.hpp"
+#include "opencl_info.hpp"
 
 #include <algorithm>
 
 namespace apsl::host {
 namespace {
 
-// clGetPlatformInfo or clGetDeviceInfo.
-template <class Object, class Query>
-std::string text(Query query, Object object, cl_uint what) {
-    std::size_t size = 0;
-    check(query(object, what, 0, nullptr, &size), "apsl: asking for a device's properties");
-    std::string value(size, '\0');
-    check(query(object, what, size, value.data(), nullptr), "apsl: asking for a device's properties");
-    value.resize(std::min(value.find('\0'), value.size()));
-    return value;
-}
-
-template <class Number>
-Number number(cl_device_id device, cl_device_info what) {
-    Number value{};
-    check(clGetDeviceInfo(device, what, sizeof value, &value, nullptr), "apsl: asking for a device's properties");
-    return value;
-}
+constexpr const char* asking = "apsl: asking for a device's properties";
 
 }  // namespace
 
@@ -43,15 +27,15 @@ std::vector<OpenClDevice> opencl_devices() {
         check(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, ids.data(), nullptr),
               "apsl: listing a platform's devices");
         for (const cl_device_id id : ids) {
-            const auto type = number<cl_device_type>(id, CL_DEVICE_TYPE);
+            const auto type = info<cl_device_type>(clGetDeviceInfo, id, CL_DEVICE_TYPE, asking);
             found.push_back({.id = id,
-                             .name = text(clGetDeviceInfo, id, CL_DEVICE_NAME),
-                             .platform = text(clGetPlatformInfo, platform, CL_PLATFORM_NAME),
-                             .driver = text(clGetDeviceInfo, id, CL_DRIVER_VERSION),
+                             .name = info_text(clGetDeviceInfo, id, CL_DEVICE_NAME, asking),
+                             .platform = info_text(clGetPlatformInfo, platform, CL_PLATFORM_NAME, asking),
+                             .driver = info_text(clGetDeviceInfo, id, CL_DRIVER_VERSION, asking),
                              .is_gpu = (type & CL_DEVICE_TYPE_GPU) != 0,
                              .is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0,
-                             .compute_units = number<cl_uint>(id, CL_DEVICE_MAX_COMPUTE_UNITS),
-                             .memory = number<cl_ulong>(id, CL_DEVICE_GLOBAL_MEM_SIZE)});
+                             .compute_units = info<cl_uint>(clGetDeviceInfo, id, CL_DEVICE_MAX_COMPUTE_UNITS, asking),
+                             .memory = info<cl_ulong>(clGetDeviceInfo, id, CL_DEVICE_GLOBAL_MEM_SIZE, asking)});
         }
     }
     // The loader lists platforms in the order of their files, which differs between machines.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "program_binary.hpp"
 
-#include "opencl_error.hpp"
+#include "opencl_info.hpp"
 
 #include <cstring>
 
@@ -52,28 +52,19 @@ Fingerprint fingerprint(std::span<const std::byte> bytes) {
     return hash.value();
 }
 
-template <class Object, class Query>
-std::string text(Query* query, Object object, cl_uint what) {
-    std::size_t size = 0;
-    check(query(object, what, 0, nullptr, &size), "asking for the names of device and platform");
-    std::string value(size, '\0');
-    check(query(object, what, size, value.data(), nullptr), "asking for the names of device and platform");
-    return value;
-}
-
 }  // namespace
 
 Fingerprint program_fingerprint(cl_device_id device, const std::string& source, const std::string& build_options) {
     Hash hash;
+    constexpr const char* asking = "asking for the names of device and platform";
     hash.add_text(source);
     hash.add_text(build_options);
     for (const cl_device_info what : {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION})
-        hash.add_text(text(clGetDeviceInfo, device, what));
-    cl_platform_id platform = nullptr;
-    check(clGetDeviceInfo(device, CL_DEVICE_PLATFORM, sizeof platform, &platform, nullptr),
-          "asking the device for its platform");
+        hash.add_text(info_text(clGetDeviceInfo, device, what, asking));
+    const auto platform =
+        info<cl_platform_id>(clGetDeviceInfo, device, CL_DEVICE_PLATFORM, "asking the device for its platform");
     for (const cl_platform_info what : {CL_PLATFORM_NAME, CL_PLATFORM_VERSION})
-        hash.add_text(text(clGetPlatformInfo, platform, what));
+        hash.add_text(info_text(clGetPlatformInfo, platform, what, asking));
     return hash.value();
 }
 
