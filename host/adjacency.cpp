@@ -131,6 +131,7 @@ Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloth
     }
     out.vertex_count = index(vertices, max_index, "vertices");
     out.triangle_count = index(triangles, max_index / 4, "triangles");
+    for (apslk_cloth& cloth : out.cloths) cloth.run = out.triangle_count;
     out.rest_area_count = index(rest_areas, max_index, "triangles");
     return out;
 }

@@ -104,7 +104,9 @@ apsl::Options options_from(const apsl_options* options) {
             .regularization_per_triangle = o.regularization_per_triangle != 0,
             .warm_start_sub_steps = o.warm_start_sub_steps,
             .solver = static_cast<apsl::Solver>(o.solver),
-            .bound_interval = o.bound_interval};
+            .bound_interval = o.bound_interval,
+            .limits_stretch = o.limits_stretch != 0,
+            .stretch_ceiling_per_triangle = o.stretch_ceiling_per_triangle != 0};
 }
 
 apsl::Parameters parameters_from(const apsl_parameters& p) {
@@ -117,6 +119,7 @@ apsl::Parameters parameters_from(const apsl_parameters& p) {
             .max_iterations = p.max_iterations,
             .adaptive_threshold = p.adaptive_threshold,
             .first_regularization = p.first_regularization,
+            .stretch_ceiling = p.stretch_ceiling,
             .stepping = static_cast<apsl::Stepping>(p.stepping),
             .enabled = p.enabled != 0};
 }
@@ -176,6 +179,8 @@ apsl_options apsl_default_options(void) {
             o.warm_start_sub_steps,
             static_cast<int32_t>(o.solver),
             o.bound_interval,
+            o.limits_stretch,
+            o.stretch_ceiling_per_triangle,
             {}};
 }
 
@@ -191,6 +196,7 @@ apsl_parameters apsl_default_parameters(void) {
             p.first_regularization,
             static_cast<int32_t>(p.stepping),
             p.enabled,
+            p.stretch_ceiling,
             {}};
 }
 
@@ -295,7 +301,9 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
                                   .velocities = view_from(buffers->velocities),
                                   .inverse_masses = view_from(buffers->inverse_masses),
                                   .rest_areas = view_from(buffers->rest_areas),
-                                  .regularization = view_from(buffers->regularization)};
+                                  .regularization = view_from(buffers->regularization),
+                                  .rest_shapes = view_from(buffers->rest_shapes),
+                                  .stretch_ceilings = view_from(buffers->stretch_ceilings)};
         const cl_event end = limiter->limiter.enqueue(queue, views, list, events(wait_count, wait_list));
         hand_over(end, event);
     });
@@ -310,6 +318,20 @@ apsl_result apsl_limiter_enqueue_rest_areas(apsl_limiter* limiter, cl_command_qu
         require(rest_areas, "rest_areas");
         hand_over(limiter->limiter.enqueue_rest_areas(queue, view_from(*rest_positions), view_from(*rest_areas),
                                                       events(wait_count, wait_list)),
+                  event);
+    });
+}
+
+apsl_result apsl_limiter_enqueue_rest_shapes(apsl_limiter* limiter, cl_command_queue queue,
+                                             const apsl_buffer_view* rest_positions,
+                                             const apsl_buffer_view* rest_shapes, cl_uint wait_count,
+                                             const cl_event* wait_list, cl_event* event) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        require(rest_positions, "rest_positions");
+        require(rest_shapes, "rest_shapes");
+        hand_over(limiter->limiter.enqueue_rest_shapes(queue, view_from(*rest_positions), view_from(*rest_shapes),
+                                                       events(wait_count, wait_list)),
                   event);
     });
 }

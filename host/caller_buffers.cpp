@@ -60,6 +60,14 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
         check(buffers.regularization, counts.triangles, Access::read, "buffers.regularization");
     else if (buffers.regularization.buffer)
         invalid("buffers.regularization is given, but Options::regularization_per_triangle is off");
+    if (options.limits_stretch)
+        check(buffers.rest_shapes, 4 * counts.triangles, Access::read, "buffers.rest_shapes");
+    else if (buffers.rest_shapes.buffer)
+        invalid("buffers.rest_shapes is given, but Options::limits_stretch is off");
+    if (options.stretch_ceiling_per_triangle)
+        check(buffers.stretch_ceilings, counts.triangles, Access::read, "buffers.stretch_ceilings");
+    else if (buffers.stretch_ceilings.buffer)
+        invalid("buffers.stretch_ceilings is given, but Options::stretch_ceiling_per_triangle is off");
 }
 
 const BufferView& corrected(const Buffers& buffers) {
@@ -68,6 +76,10 @@ const BufferView& corrected(const Buffers& buffers) {
 
 const BufferView& regularization_or_any(const Buffers& buffers) {
     return buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
+}
+
+const BufferView& stretch_ceilings_or_any(const Buffers& buffers) {
+    return buffers.stretch_ceilings.buffer ? buffers.stretch_ceilings : buffers.rest_areas;
 }
 
 }  // namespace apsl::host

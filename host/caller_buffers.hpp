@@ -25,5 +25,7 @@ const BufferView& corrected(const Buffers& buffers);
 /// α of each triangle. Where one holds for all, another buffer: a kernel needs some buffer there even where it reads
 /// none.
 const BufferView& regularization_or_any(const Buffers& buffers);
+/// Likewise.
+const BufferView& stretch_ceilings_or_any(const Buffers& buffers);
 
 }  // namespace apsl::host

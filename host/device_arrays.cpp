@@ -52,18 +52,20 @@ DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency
     }
     if (options.apply == Apply::assembled_csr) arrays.values = buffer(adjacency.columns.size() * sizeof(float));
 
-    arrays.ordered_rest_areas = zeroed(triangle_count);
+    // Rows of areas and of stretches.
+    const std::size_t row_count = triangle_count * (options.limits_stretch ? 2 : 1);
+    arrays.ordered_rest = zeroed(triangle_count * (options.limits_stretch ? APSLK_CEILING + 1 : 1));
     arrays.ordered_scaling = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
     if (by_chebyshev) arrays.vertex_bounds = buffer(vertex_count * sizeof(float));
     arrays.moved = buffer(vertex_count * sizeof(cl_float4));
     const std::size_t moving_vertices = options.positions_only ? 1 : vertex_count;
     arrays.motion = buffer(moving_vertices * sizeof(cl_float4));
     arrays.total_correction = buffer(moving_vertices * sizeof(cl_float4));
-    arrays.start_errors = zeroed(options.positions_only ? 1 : triangle_count);
-    arrays.gradients = buffer(triangle_count * gradient_bytes);
-    arrays.residual = zeroed(triangle_count);
-    arrays.scaled_diagonal = zeroed(triangle_count);
-    arrays.direction = buffer(triangle_count * sizeof(float));
+    arrays.start_errors = zeroed(options.positions_only ? 1 : row_count);
+    arrays.gradients = buffer(row_count * gradient_bytes);
+    arrays.residual = zeroed(row_count);
+    arrays.scaled_diagonal = zeroed(row_count);
+    arrays.direction = buffer(row_count * sizeof(float));
     if (!by_chebyshev) {
         arrays.product = zeroed(triangle_count);
         arrays.direction_product = buffer(triangle_count * sizeof(float));
@@ -72,7 +74,7 @@ DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency
         arrays.pressures.push_back(zeroed(triangle_count * std::size_t{1 + options.warm_start_sub_steps}));
     else
         for (std::uint32_t n = 0; n < std::max(options.warm_start_sub_steps, 1u); ++n)
-            arrays.pressures.push_back(zeroed(triangle_count));
+            arrays.pressures.push_back(zeroed(row_count));
     return arrays;
 }
 

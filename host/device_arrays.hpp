@@ -19,7 +19,7 @@ struct DeviceArrays {
     BufferHandle vertex_order, triangle_order, triangles, corner_offsets, corners;
     BufferHandle patches, patch_vertices, local_triangles;  ///< of the matrix applied from patches
     BufferHandle row_offsets, columns, shared, values;      ///< of the matrix applied by its pattern
-    BufferHandle ordered_rest_areas, ordered_scaling;
+    BufferHandle ordered_rest, ordered_scaling;
     BufferHandle moved, motion, total_correction, start_errors, gradients, residual, scaled_diagonal;
     BufferHandle product, direction, direction_product, vertex_bounds;
     /// One for each sub-step whose pressures are kept, one alone where none are; in one_group all in a single buffer.

@@ -25,6 +25,7 @@ apslk_parameters device_parameters(const ResolvedParameters& p) {
             .small_steps = p.small_steps,
             .enabled = on,
             .raises_masses = p.raises_masses,
+            .stretch_ceiling = p.stretch_ceiling,
             .padding = {}};
 }
 

@@ -23,6 +23,12 @@ const Kernel& rest_areas(const Kernel& kernel, const Arrays& a, const BufferView
 }
 
 template <class Arrays>
+const Kernel& rest_shapes(const Kernel& kernel, const Arrays& a, const BufferView& rest_positions,
+                          const BufferView& shapes) {
+    return set_arguments(kernel, a.cloths, a.vertex_order, a.triangle_order, a.triangles, rest_positions, shapes);
+}
+
+template <class Arrays>
 const Kernel& predict_positions(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.moved,
                          a.motion, caller.positions, corrected(caller), caller.inverse_masses);
@@ -30,14 +36,20 @@ const Kernel& predict_positions(const Kernel& kernel, const Arrays& a, const Buf
 
 template <class Arrays>
 const Kernel& order_triangle_values(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.triangle_order, a.ordered_rest_areas, a.ordered_scaling,
+    return set_arguments(kernel, a.cloths, a.parameters, a.triangle_order, a.ordered_rest, a.ordered_scaling,
                          caller.rest_areas, regularization_or_any(caller));
 }
 
 template <class Arrays>
+const Kernel& order_stretch_limits(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.triangle_order, a.ordered_rest, caller.rest_shapes,
+                         stretch_ceilings_or_any(caller));
+}
+
+template <class Arrays>
 const Kernel& measure_step(const Kernel& kernel, const Arrays& a) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.moved, a.motion,
-                         a.ordered_rest_areas, a.start_errors);
+    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.moved, a.motion, a.ordered_rest,
+                         a.start_errors);
 }
 
 template <class Arrays>
@@ -54,7 +66,7 @@ const Kernel& start_small_steps(const Kernel& kernel, const Arrays& a, const Buf
 template <class Arrays>
 const Kernel& assemble_gradients(const Kernel& kernel, const Arrays& a, bool by_chebyshev, cl_int sub_step) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.moved, a.gradients,
-                         a.residual, a.scaled_diagonal, a.ordered_rest_areas,
+                         a.residual, a.scaled_diagonal, a.ordered_rest,
                          by_chebyshev ? a.vertex_bounds : a.ordered_scaling, a.start_errors, sub_step);
 }
 
@@ -136,16 +148,17 @@ const Kernel& gather_displacements(const Kernel& kernel, const Arrays& a, const 
                          a.gradients, pressure, a.moved, a.motion, a.total_correction, sub_step, slot);
 }
 
-template <class Arrays>
-const Kernel& measure_area_change(const Kernel& kernel, const Arrays& a) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.moved, a.motion,
-                         a.ordered_rest_areas);
+/// `pressure`: of the last sub-step.
+template <class Arrays, class Array>
+const Kernel& measure_area_change(const Kernel& kernel, const Arrays& a, const Array& pressure) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.moved, a.motion, a.ordered_rest,
+                         pressure);
 }
 
 template <class Arrays>
 const Kernel& end_call(const Kernel& kernel, const Arrays& a) {
     return set_arguments(kernel, a.cloths, a.states, a.stats, a.partials, a.vertex_order, a.triangle_order, a.triangles,
-                         a.moved, a.ordered_rest_areas, a.groups);
+                         a.moved, a.ordered_rest, a.groups);
 }
 
 template <class Arrays>
@@ -161,8 +174,8 @@ const Kernel& filter_in_one_group(const Kernel& kernel, const Arrays& a, const A
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.triangle_order,
                          a.triangles, a.patches, a.patch_vertices, a.local_triangles, a.corner_offsets, a.corners,
                          a.moved, a.motion, a.total_correction, a.gradients, a.residual, a.scaled_diagonal, a.product,
-                         a.direction, a.direction_product, pressure, a.ordered_rest_areas, a.ordered_scaling,
-                         a.start_errors, caller.positions, corrected(caller), caller.inverse_masses, caller.rest_areas,
+                         a.direction, a.direction_product, pressure, a.ordered_rest, a.ordered_scaling, a.start_errors,
+                         caller.positions, corrected(caller), caller.inverse_masses, caller.rest_areas,
                          regularization_or_any(caller), pressure_stride);
 }
 

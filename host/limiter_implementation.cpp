@@ -23,6 +23,7 @@ static_assert(offsetof(Stats, residual) == offsetof(apslk_stats, residual));
 static_assert(offsetof(Stats, status) == offsetof(apslk_stats, status));
 static_assert(offsetof(Stats, offender_index) == offsetof(apslk_stats, offender_index));
 static_assert(offsetof(Stats, greatest_mass_ratio) == offsetof(apslk_stats, greatest_mass_ratio));
+static_assert(offsetof(Stats, stretch_rows) == offsetof(apslk_stats, stretch_rows));
 static_assert(std::has_single_bit(sizeof(apslk_parameters)), "clEnqueueFillBuffer takes powers of two");
 static_assert(static_cast<int>(Status::not_converged) == APSLK_STATUS_NOT_CONVERGED);
 static_assert(static_cast<int>(Status::worsened) == APSLK_STATUS_WORSENED);
@@ -192,7 +193,7 @@ void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, c
     const BufferHandle& pressure = arrays.pressures[0];
     if (static_cast<std::uint32_t>(sub_step) % options.bound_interval == 0) queue_bound(commands, sub_step);
     queue_assembly(commands, sub_step);
-    const cl_int products = queued_products(budget, sub_step);
+    const cl_int products = queued_products(budget, sub_step, options.limits_stretch);
     for (cl_int k = 0; k < products; ++k)
         launch(commands, arguments::chebyshev_step(kernels.chebyshev_step, arrays, pressure, sub_step, products, k));
     launch(commands, arguments::gather_displacements(kernels.gather_displacements, arrays, pressure, sub_step, 0));
@@ -202,6 +203,8 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
                                                       const CallBudget& budget) const {
     launch(commands, arguments::predict_positions(kernels.predict_positions, arrays, buffers));
     launch(commands, arguments::order_triangle_values(kernels.order_triangle_values, arrays, buffers));
+    if (options.limits_stretch)
+        launch(commands, arguments::order_stretch_limits(kernels.order_stretch_limits, arrays, buffers));
     if (budget.takes_small_steps) {
         launch(commands, arguments::measure_step(kernels.measure_step, arrays));
         launch_one_group(commands, arguments::judge_whole_step(kernels.judge_whole_step, arrays));
@@ -212,7 +215,7 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
             queue_chebyshev(commands, budget, sub_step);
         else
             queue_conjugate_gradient(commands, budget, sub_step);
-    launch(commands, arguments::measure_area_change(kernels.measure_area_change, arrays));
+    launch(commands, arguments::measure_area_change(kernels.measure_area_change, arrays, arrays.pressures.front()));
     launch_one_group(commands, arguments::end_call(kernels.end_call, arrays));
     if (budget.sub_steps > 0)
         launch(commands, arguments::update_velocities(kernels.update_velocities, arrays, buffers));
@@ -253,6 +256,18 @@ cl_event StrainLimiter::Implementation::enqueue_rest_areas(cl_command_queue queu
     check_view(areas, caller_counts.triangles, Access::write, context, "rest_areas");
     CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
     launch(commands, arguments::rest_areas(kernels.rest_areas, arrays, rest_positions, areas));
+    return commands.end();
+}
+
+cl_event StrainLimiter::Implementation::enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions,
+                                                            const BufferView& shapes,
+                                                            std::span<const cl_event> wait_list) {
+    if (!options.limits_stretch) invalid("rest shapes are asked for, but Options::limits_stretch is off");
+    check_queue(queue, wait_list, context, device);
+    check_view(rest_positions, position_floats(options, caller_counts), Access::read, context, "rest_positions");
+    check_view(shapes, 4 * caller_counts.triangles, Access::write, context, "rest_shapes");
+    CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
+    launch(commands, arguments::rest_shapes(kernels.rest_shapes, arrays, rest_positions, shapes));
     return commands.end();
 }
 

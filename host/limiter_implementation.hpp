@@ -37,6 +37,8 @@ struct StrainLimiter::Implementation {
                      std::span<const cl_event> wait_list);
     cl_event enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions, const BufferView& areas,
                                 std::span<const cl_event> wait_list);
+    cl_event enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions, const BufferView& shapes,
+                                 std::span<const cl_event> wait_list);
 
     host::DeviceFacts facts;
     Options options;

@@ -12,6 +12,10 @@ LimiterKernels create_kernels(cl_program program, const Options& options) {
         create(kernels.filter_in_one_group, "filter_in_one_group");
         return kernels;
     }
+    if (options.limits_stretch) {
+        create(kernels.rest_shapes, "rest_shapes");
+        create(kernels.order_stretch_limits, "order_stretch_limits");
+    }
     create(kernels.predict_positions, "predict_positions");
     create(kernels.order_triangle_values, "order_triangle_values");
     create(kernels.measure_step, "measure_step");

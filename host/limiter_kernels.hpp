@@ -17,6 +17,7 @@ struct LimiterKernels {
     Kernel matrix_free_apply_dot;  ///< of the consistent or of the printed matrix
     Kernel cg_update, finish_solve, measure_guess, start_from_guess;
     Kernel bound_vertices, chebyshev_step;
+    Kernel rest_shapes, order_stretch_limits;
 };
 
 /// `options`: resolved. Throws Error(opencl) naming the kernel.

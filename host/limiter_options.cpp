@@ -76,6 +76,7 @@ std::size_t largest_triangle_count(std::span<const std::shared_ptr<const Topolog
 
 Options resolve(Options options, const DeviceFacts& facts, std::span<const std::shared_ptr<const Topology>> cloths) {
     validate(options);
+    options.solver = resolved_solver(options);
     const std::size_t vertices = total_vertices(cloths);
     check_vector_strides(options.position_stride, options.position_component_stride, vertices, "position");
     check_vector_strides(options.velocity_stride, options.velocity_component_stride, vertices, "velocity");
@@ -139,7 +140,9 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
            define("APSLK_PATCH_VERTICES", patch_vertices) +
            define("APSLK_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +
            define("APSLK_WARM_START_SUB_STEPS", options.warm_start_sub_steps) +
-           define("APSLK_CHEBYSHEV", options.solver == Solver::chebyshev ? 1 : 0);
+           define("APSLK_CHEBYSHEV", options.solver == Solver::chebyshev ? 1 : 0) +
+           define("APSLK_LIMITS_STRETCH", options.limits_stretch ? 1 : 0) +
+           define("APSLK_STRETCH_CEILING_PER_TRIANGLE", options.stretch_ceiling_per_triangle ? 1 : 0);
 }
 
 std::uint32_t patch_triangles(const DeviceFacts& facts, const Options& options, std::size_t largest) {

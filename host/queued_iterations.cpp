@@ -55,11 +55,11 @@ int queued_iterations(std::size_t largest, const CallBudget& budget, int sub_ste
     return std::min(std::max(static_cast<int>(even), least_queued), budget.max_iterations);
 }
 
-int queued_products(const CallBudget& budget, int sub_step) {
+int queued_products(const CallBudget& budget, int sub_step, bool limits_stretch) {
     const double least = std::min(budget.first_alpha, budget.regularization);
     const bool damped = least > 1.0;
     const double alpha = budget.one_schedule && damped ? least_regularization(budget, sub_step) : least;
-    return chebyshev_products(alpha, budget.max_iterations);
+    return chebyshev_products(alpha, budget.max_iterations, limits_stretch);
 }
 
 }  // namespace apsl::host

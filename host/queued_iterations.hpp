@@ -28,6 +28,6 @@ struct CallBudget {
 int queued_iterations(std::size_t largest, const CallBudget& budget, int sub_step);
 
 /// Products of a Chebyshev solve in sub-step `sub_step`: as many as the cloth with most of them takes.
-int queued_products(const CallBudget& budget, int sub_step);
+int queued_products(const CallBudget& budget, int sub_step, bool limits_stretch);
 
 }  // namespace apsl::host

@@ -78,6 +78,11 @@ cl_event StrainLimiter::enqueue_rest_areas(cl_command_queue queue, const BufferV
     return implementation_->enqueue_rest_areas(queue, rest_positions, rest_areas, wait_list);
 }
 
+cl_event StrainLimiter::enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions,
+                                            const BufferView& rest_shapes, std::span<const cl_event> wait_list) {
+    return implementation_->enqueue_rest_shapes(queue, rest_positions, rest_shapes, wait_list);
+}
+
 cl_event StrainLimiter::read_stats(cl_command_queue queue, std::span<Stats> stats,
                                    std::span<const cl_event> wait_list) const {
     if (stats.size() != implementation_->cloth_count)

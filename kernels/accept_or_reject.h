@@ -4,6 +4,7 @@
 #define APSLK_ACCEPT_OR_REJECT_H
 
 #include "layout.h"
+#include "limits_stretch.h"
 
 // |A − A⁰| / A⁰ over the triangles of a cloth.
 typedef struct {
@@ -11,6 +12,11 @@ typedef struct {
     float rms;         // weighted with A⁰
     float capped_rms;  // the same with each triangle's counted as at most 1
     float measured;    // Σ A⁰, m²
+#if APSLK_LIMITS_STRETCH
+    float max_stretch;
+    float max_excess;  // of stretch over the ceiling; capped_rms has it too
+    float rms_excess;  // weighted with A⁰
+#endif
 } apslk_area_change;
 
 typedef struct {
@@ -27,14 +33,36 @@ APSLK_INLINE float greatest_change_at_rest(float extent, float measured, uint tr
     return isfinite(rounding) ? fmax(rounding, APSLK_AT_REST) : APSLK_AT_REST;
 }
 
+// What is judged: the greater of area change and excess, and the squares of both.
+APSLK_INLINE float judged_max(apslk_area_change change) {
+#if APSLK_LIMITS_STRETCH
+    return fmax(change.max, change.max_excess);
+#else
+    return change.max;
+#endif
+}
+
+APSLK_INLINE float judged_rms(apslk_area_change change) {
+#if APSLK_LIMITS_STRETCH
+    return hypot(change.rms, change.rms_excess);
+#else
+    return change.rms;
+#endif
+}
+
 // The capped RMS decides, so that a single triangle does not cost the others their correction.
 APSLK_INLINE apslk_verdict judge(apslk_area_change initial, apslk_area_change change, float change_at_rest) {
-    const bool rose = change.max > initial.max || change.rms > initial.rms || change.capped_rms > initial.capped_rms;
-    const bool at_rest = initial.max <= change_at_rest;
+    const bool rose = judged_max(change) > judged_max(initial) || judged_rms(change) > judged_rms(initial) ||
+                      change.capped_rms > initial.capped_rms;
+    const bool at_rest = judged_max(initial) <= change_at_rest;
     apslk_verdict verdict;
     verdict.worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
+#if APSLK_LIMITS_STRETCH
+    // Where tension goes unstable all of a cloth explodes, and the cap would hide it.
+    verdict.worse = verdict.worse || judged_rms(change) > judged_rms(initial);
+#endif
     verdict.rose = rose && !at_rest;
-    verdict.names = !verdict.worse && change.max > initial.max;
+    verdict.names = !verdict.worse && judged_max(change) > judged_max(initial);
     return verdict;
 }
 
@@ -43,6 +71,11 @@ APSLK_INLINE void store_initial(__global apslk_solve_state* state, __global apsl
                                 apslk_area_change change, bool finite) {
     stats->initial_max_area_change = finite ? change.max : 0.0f;
     stats->initial_rms_area_change = finite ? change.rms : 0.0f;
+#if APSLK_LIMITS_STRETCH
+    stats->initial_max_stretch_excess = finite ? change.max_excess : 0.0f;
+    stats->initial_rms_stretch_excess = finite ? change.rms_excess : 0.0f;
+    stats->max_stretch = finite ? change.max_stretch : 0.0f;
+#endif
     state->initial_capped_rms = finite ? change.capped_rms : 0.0f;
 }
 
@@ -53,6 +86,11 @@ APSLK_INLINE apslk_area_change stored_initial(__global const apslk_solve_state* 
     initial.rms = stats->initial_rms_area_change;
     initial.capped_rms = state->initial_capped_rms;
     initial.measured = 0.0f;  // not kept
+#if APSLK_LIMITS_STRETCH
+    initial.max_stretch = stats->max_stretch;
+    initial.max_excess = stats->initial_max_stretch_excess;
+    initial.rms_excess = stats->initial_rms_stretch_excess;
+#endif
     return initial;
 }
 
@@ -60,6 +98,11 @@ APSLK_INLINE apslk_area_change stored_initial(__global const apslk_solve_state* 
 APSLK_INLINE void store_area_change(__global apslk_stats* stats, apslk_area_change standing) {
     stats->max_area_change = standing.max;
     stats->rms_area_change = standing.rms;
+#if APSLK_LIMITS_STRETCH
+    stats->max_stretch = standing.max_stretch;
+    stats->max_stretch_excess = standing.max_excess;
+    stats->rms_stretch_excess = standing.rms_excess;
+#endif
 }
 
 #endif

@@ -5,11 +5,16 @@
 
 #include "accept_or_reject.h"
 #include "layout.h"
+#include "limits_stretch.h"
+#include "principal_stretch.h"
 #include "triangle_geometry.h"
 #include "work_group.h"
 
 typedef struct {
     lanes max_change, squared_change, capped_change, measured, not_finite;
+#if APSLK_LIMITS_STRETCH
+    lanes max_stretch, max_excess, squared_excess;
+#endif
 } apslk_area_sums;
 
 APSLK_INLINE apslk_area_sums no_areas(void) {
@@ -19,6 +24,11 @@ APSLK_INLINE apslk_area_sums no_areas(void) {
     sums.capped_change = 0.0f;
     sums.measured = 0.0f;
     sums.not_finite = 0.0f;
+#if APSLK_LIMITS_STRETCH
+    sums.max_stretch = 0.0f;
+    sums.max_excess = 0.0f;
+    sums.squared_excess = 0.0f;
+#endif
     return sums;
 }
 
@@ -52,10 +62,32 @@ APSLK_INLINE void add_areas(apslk_area_sums* sums, apslk_triangle_geometry trian
     sums->not_finite += select((lanes)(1.0f), (lanes)(0.0f), fabs(area_witness(triangle, rest_area)) < INFINITY);
 }
 
+#if APSLK_LIMITS_STRETCH
+// Triangles without a ceiling have no say. `rest`: the limiter's rest values.
+APSLK_INLINE void add_stretches(apslk_area_sums* sums, apslk_cloth cloth, apslk_triangle_geometry triangle,
+                                lanes rest_area, __global const float* rest, uint first) {
+    const apslk_rest_shape shape = load_rest_shape(cloth, rest, first);
+    const lanes stretch = select((lanes)(0.0f), principal_stretch(triangle, shape).value, shape.ceiling > 0.0f);
+    const lanes excess = stretch_excess(stretch, shape.ceiling);
+    const lanes weight = select((lanes)(0.0f), rest_area, rest_area > 0.0f);
+    sums->max_stretch = fmax(sums->max_stretch, stretch);
+    sums->max_excess = fmax(sums->max_excess, excess);
+    sums->squared_excess += weight * excess * excess;
+    const lanes capped = fmin(excess, (lanes)(1.0f));
+    sums->capped_change += weight * capped * capped;
+    sums->not_finite += select((lanes)(1.0f), (lanes)(0.0f), stretch * stretch < INFINITY);
+}
+#endif
+
 // From the sums over a cloth.
 APSLK_INLINE apslk_area_change area_change_of(float max, float squared, float capped, float measured) {
     apslk_area_change change;
     change.max = max;
+#if APSLK_LIMITS_STRETCH
+    change.max_stretch = 0.0f;
+    change.max_excess = 0.0f;
+    change.rms_excess = 0.0f;
+#endif
     change.measured = measured;
     change.rms = measured > 0.0f ? sqrt(squared / measured) : 0.0f;
     change.capped_rms = measured > 0.0f ? sqrt(capped / measured) : 0.0f;
@@ -76,6 +108,11 @@ APSLK_INLINE void store_area_partials(apslk_area_sums sums, __global float* part
     store_partial(partials, APSLK_PARTIAL_CAPPED_CHANGE, group_sum(sum_of_lanes(sums.capped_change), scratch));
     store_partial(partials, APSLK_PARTIAL_MEASURED, group_sum(sum_of_lanes(sums.measured), scratch));
     store_partial(partials, APSLK_PARTIAL_NOT_FINITE, group_sum(sum_of_lanes(sums.not_finite), scratch));
+#if APSLK_LIMITS_STRETCH
+    store_partial(partials, APSLK_PARTIAL_MAX_STRETCH, group_max(max_of_lanes(sums.max_stretch), scratch));
+    store_partial(partials, APSLK_PARTIAL_MAX_EXCESS, group_max(max_of_lanes(sums.max_excess), scratch));
+    store_partial(partials, APSLK_PARTIAL_SQUARED_EXCESS, group_sum(sum_of_lanes(sums.squared_excess), scratch));
+#endif
 }
 
 #endif

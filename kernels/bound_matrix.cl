@@ -5,6 +5,7 @@
 #include "gradients.h"
 #include "lanes.h"
 #include "layout.h"
+#include "limits_stretch.h"
 #include "work_group.h"
 
 // Symmetric 3×3 matrices.
@@ -62,8 +63,17 @@ APSLK_KERNEL void bound_vertices(__global const apslk_cloth* cloths, __global co
                 const float inverse = 1.0f / fmax(squares.x + squares.y + squares.z, 1.0f);
                 on_diagonal += inverse * squares;
                 beside += inverse * (g.xxyw * g.yzzw);
+#if APSLK_LIMITS_STRETCH
+                if (has_stretch_row(gradients, APSLK_CORNER_TRIANGLE(corners[n]))) {
+                    const float4 d = corner_gradient(gradients + cloth.run, corners[n]), d_squares = d * d;
+                    const float d_inverse = 1.0f / fmax(d_squares.x + d_squares.y + d_squares.z, 1.0f);
+                    on_diagonal += d_inverse * d_squares;
+                    beside += d_inverse * (d.xxyw * d.yzzw);
+                    gradients_around[v] += 1.0f;
+                }
+#endif
             }
-            gradients_around[v] = (float)(end - begin);
+            gradients_around[v] += (float)(end - begin);
             entries[v] = on_diagonal.x;
             entries[APSLK_LANES + v] = on_diagonal.y;
             entries[2 * APSLK_LANES + v] = on_diagonal.z;
@@ -78,7 +88,8 @@ APSLK_KERNEL void bound_vertices(__global const apslk_cloth* cloths, __global co
         store_private_lanes(greatest_eigenvalue(sums) + fmax(unknown, (lanes)(0.0f)), bounds);
         for (uint v = 0; v < count; ++v) {
             const uint i = cloth.vertex_begin + first + v;
-            const bool raised = parameters[c].raises_masses && moved[i].w < motion[i].w;
+            // With a stretch ceiling the bound is that of the masses and triangles that are solved with.
+            const bool raised = !APSLK_LIMITS_STRETCH && parameters[c].raises_masses && moved[i].w < motion[i].w;
             vertex_bounds[i] = (raised ? APSLK_RAISED_MARGIN : 1.0f) * bounds[v];
         }
     }

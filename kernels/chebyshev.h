@@ -5,13 +5,15 @@
 #define APSLK_CHEBYSHEV_H
 
 #include "layout.h"
+#include "limits_stretch.h"
 #include "regularization.h"
 
 // Products with the matrix that have the reach of the sub-step's α.
 APSLK_INLINE int chebyshev_products(apslk_parameters parameters, int sub_step) {
     const float damping = (parameters.regularization - 1.0f) *
                           scheduled_damping(parameters.damping_step, parameters.sub_steps - 1 - sub_step);
-    return (int)clamp(round(sqrt(APSLK_CHEBYSHEV_REACH / damping)) - 1.0f, 1.0f, (float)parameters.max_iterations);
+    const float reach = APSLK_LIMITS_STRETCH ? APSLK_ROWS_REACH : APSLK_CHEBYSHEV_REACH;
+    return (int)clamp(round(sqrt(reach / damping)) - 1.0f, 1.0f, (float)parameters.max_iterations);
 }
 
 typedef struct {

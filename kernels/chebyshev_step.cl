@@ -3,9 +3,11 @@
 //   y_{k+1} = y_k + a_k (y_k − y_{k−1}) + b_k (b̄ − J̄ J̄ᵀ y_k),   y₀ = 0,   y₁ = b̄/θ
 // with b̄ the scaled right-hand side. Reference: apsl::reference::chebyshev.
 // Moves, a triangle and with 1.1 for the patches' rims: 1.1 × (12 B corners, 2 + 2 B vertices, 24 B gradients, 4 B y)
-// and 6 B local indices, 8 B of b̄ and y_{k−1} read, 4 B written.
+// and 6 B local indices, 8 B of b̄ and y_{k−1} read, 4 B written. With a stretch ceiling each triangle has a second row,
+// whose multiplier stays at or above zero; where it takes no part it costs nothing but looking.
 #include "chebyshev.h"
 #include "layout.h"
+#include "limits_stretch.h"
 #include "patch_product.h"
 #include "work_group.h"
 
@@ -30,10 +32,11 @@ APSLK_KERNEL void chebyshev_step(__global const apslk_cloth* cloths, __global co
     __global const float* before = k <= 2 ? right_hand_side : next;
     const float before_scale = k == 1 ? 0.0f : k == 2 ? step.first : 1.0f;
 
+    const uint run = cloths[c].run;
     const apslk_patch_range range = patches_of(cloths[c], active);
     for (uint patch = range.begin; patch < range.end; ++patch) {
         const uint2 first = patches[patch], last = patches[patch + 1];
-        gather_forces(first.y, last.y, patch_vertices, corner_offsets, corners, gradients, gathered, forces);
+        gather_forces(first.y, last.y, patch_vertices, corner_offsets, corners, gradients, gathered, run, forces);
         group_barrier();
         for (uint a = first.x + (uint)get_local_id(0); a < last.x; a += APSLK_WORK_GROUP_SIZE) {
             APSLK_PREFETCH(gradients + a + APSLK_PREFETCH_TRIANGLES);
@@ -42,6 +45,17 @@ APSLK_KERNEL void chebyshev_step(__global const apslk_cloth* cloths, __global co
             const float y = scale * gathered[a];
             const float q = product_scale * apply_to_forces(a, local_triangles, gradients, forces);
             next[a] = y + step.momentum * (y - before_scale * before[a]) + step.gain * (b - q);
+#if APSLK_LIMITS_STRETCH
+            if (has_stretch_row(gradients, a)) {
+                const uint s = run + a;
+                const float z = scale * fmax(gathered[s], 0.0f);
+                const float earlier = before_scale * fmax(before[s], 0.0f);
+                const float product = product_scale * apply_to_forces(a, local_triangles, gradients + run, forces);
+                next[s] = fmax(z + step.momentum * (z - earlier) + step.gain * (right_hand_side[s] - product), 0.0f);
+            } else if (k == products) {
+                next[run + a] = 0.0f;  // for measure_area_change, which comes after the next assembly
+            }
+#endif
         }
         group_barrier();
     }

@@ -20,6 +20,23 @@
 // stiffens it.
 #define APSLK_GREATEST_MEAN_MASSES 10.0f
 
+// Stretch ceiling (docs/formulation.md, Stretch ceiling).
+#define APSLK_LEAST_STRETCH_CEILING 1.01f
+// A row takes part from this far below its ceiling on: areas that are corrected may push it over.
+#define APSLK_STRETCH_MARGIN 0.05f
+// The share of an excess that one sub-step takes; the next takes up what it leaves.
+#define APSLK_EXCESS_TAKEN 0.6f
+// Of |∇C|²: what a row demands beyond its triangle's area row is noise below.
+#define APSLK_LEAST_ROW_SHARE 1e-6f
+// What stands at the start of the step is led back over the first of this number of parts of it.
+#define APSLK_PARTS_OF_LEAD 3
+// Added mass of a vertex, in stiffnesses of the tension around it.
+#define APSLK_MASS_ADDED_PER_STIFFNESS 4.0f
+// The bound is that of the very triangles and masses that are solved with: this is for rounding.
+#define APSLK_ROWS_BOUND_MARGIN 1.02f
+// Both rows' bound is that much larger than that of areas alone (APSLK_CHEBYSHEV_REACH), and their polynomial longer.
+#define APSLK_ROWS_REACH 7.2f
+
 // Safety factor of the bound of the matrix. With Options::bound_interval above 1 the directions in it are those of an
 // earlier sub-step, and the cloth has moved since.
 #define APSLK_BOUND_MARGIN 1.1f

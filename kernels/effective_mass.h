@@ -28,6 +28,18 @@ APSLK_INLINE float share_taken(float given, float effective, float stiffness, fl
     return ratio > 1.0f ? 1.0f / ratio : 1.0f;
 }
 
+// With a stretch ceiling (docs/formulation.md, Stretch ceiling): 1/w' for the stiffness K, kg. `given` is w > 0.
+// Reference: apsl::reference, stretch_limiting.
+APSLK_INLINE float inverse_mass_under_tension(float given, float stiffness) {
+    return stiffness > 0.0f ? 1.0f / (1.0f / given + APSLK_MASS_ADDED_PER_STIFFNESS * stiffness) : given;
+}
+
+// The K that counts, from K w'. With what is already added the same tension comes out heavier: the fourth root keeps
+// that from running away.
+APSLK_INLINE float counted_stiffness(float given, float effective, float tension) {
+    return tension / effective * sqrt(sqrt(effective / given));
+}
+
 typedef struct {
     float count;           // vertices that weigh more than given
     float greatest_ratio;  // w over w', 1 where there are none

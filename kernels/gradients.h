@@ -15,8 +15,10 @@
 // Three members, not an array of three: a checker that knows the array's length would call those indices out of bounds.
 typedef struct {
     short4 corner_0, corner_1, corner_2;  // w is zero
-    float shift;                          // (α − 1)/α
-    float stiffening;                     // √(α D) / A, m⁻¹ kg^(−1/2): see apslk_corner_sums
+    // (α − 1)/α. With a stretch ceiling, where there is no damping, 1 if the triangle's stretch row takes part and 0 if
+    // not; then nothing reads that row. Of a stretch row the share ρ = r √(B_A/B) of its area row.
+    float shift;
+    float stiffening;  // √(α D) / A, m⁻¹ kg^(−1/2): see apslk_corner_sums; of a stretch row, A⁰ s₁
 } apslk_gradients;
 
 #define APSLK_GRADIENT_UNIT (1.0f / 32767.0f)
@@ -24,6 +26,10 @@ typedef struct {
 // In units of APSLK_GRADIENT_UNIT; w is zero.
 APSLK_INLINE float4 corner_gradient(__global const apslk_gradients* gradients, uint corner) {
     return convert_float4(((__global const short4*)gradients)[corner]);
+}
+
+APSLK_INLINE bool has_stretch_row(__global const apslk_gradients* gradients, uint triangle) {
+    return gradients[triangle].shift > 0.0f;
 }
 
 APSLK_INLINE float dot3(float4 a, float4 b) {

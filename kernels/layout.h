@@ -19,6 +19,13 @@ typedef std::uint32_t apslk_uint;
 typedef std::int32_t apslk_int;
 #endif
 
+// Runs of the limiter's rest values: of A⁰, and with a stretch ceiling of M = [m₀₀ m₀₁; 0 m₁₁], F = [x₁ − x₀, x₂ − x₀]
+// M, and of the ceiling, 0 where a triangle has none.
+#define APSLK_REST_SHAPE_00 1
+#define APSLK_REST_SHAPE_01 2
+#define APSLK_REST_SHAPE_11 3
+#define APSLK_CEILING 4
+
 // Where a cloth lies in the limiter's arrays. Fixed when the limiter is built.
 typedef struct {
     apslk_uint vertex_begin;
@@ -28,7 +35,7 @@ typedef struct {
     apslk_uint patch_begin;
     apslk_uint patch_count;
     apslk_uint rest_area_begin;  // in the caller's arrays
-    apslk_uint padding;
+    apslk_uint run;              // entries of the limiter's triangle arrays, of all cloths together
 } apslk_cloth;
 
 // One cloth's apsl::Parameters for the current call.
@@ -44,7 +51,8 @@ typedef struct {
     apslk_int small_steps;         // sub-steps that move on by a part of Δt; 0: all correct at its end
     apslk_int enabled;             // 0: the cloth is left alone in this call
     apslk_int raises_masses;       // 0: every vertex weighs what was given
-    apslk_int padding[5];
+    float stretch_ceiling;         // 0: none
+    apslk_int padding[4];
 } apslk_parameters;
 
 // Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.
@@ -67,6 +75,12 @@ typedef struct {
     apslk_uint offender_index;
     apslk_uint raised_vertices;
     float greatest_mass_ratio;
+    float max_stretch;
+    float max_stretch_excess;
+    float rms_stretch_excess;
+    float initial_max_stretch_excess;
+    float initial_rms_stretch_excess;
+    apslk_uint stretch_rows;
 } apslk_stats;
 
 #define APSLK_STATUS_OK 0
@@ -116,7 +130,11 @@ typedef struct {
 #define APSLK_PARTIAL_RAISED 14         // vertices that weigh more than given
 #define APSLK_PARTIAL_MASS_RATIO 15     // their greatest mass over the one given
 #define APSLK_PARTIAL_EXTENT 16         // greatest |coordinate| at x̃ + Δt ṽ, m
-#define APSLK_PARTIAL_KINDS 17
+#define APSLK_PARTIAL_MAX_STRETCH 17
+#define APSLK_PARTIAL_MAX_EXCESS 18      // of stretch over the ceiling
+#define APSLK_PARTIAL_SQUARED_EXCESS 19  // the capped change has those of the excess too
+#define APSLK_PARTIAL_STRETCH_ROWS 20    // those with a multiplier above zero
+#define APSLK_PARTIAL_KINDS 21
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSLK_TRIANGLE_ALIGNMENT 16

@@ -2,19 +2,36 @@
 // Area change at the moved positions. Reference: apsl::reference, area change.
 #include "effective_mass.h"
 #include "layout.h"
+#include "limits_stretch.h"
 #include "triangle_assembly.h"
 #include "work_group.h"
+
+#if APSLK_LIMITS_STRETCH
+// Triangles of this work-item whose stretch row has a multiplier above zero.
+APSLK_INLINE float stretch_rows_at_work(apslk_cloth cloth, bool active, __global const float* pressure) {
+    const apslk_range range = share_of(cloth.triangle_count, active);
+    float count = 0.0f;
+    for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE)
+        count += pressure[cloth.run + cloth.triangle_begin + t] > 0.0f ? 1.0f : 0.0f;
+    return count;
+}
+#endif
 
 // What a call leaves behind, and the vertices that weighed more than given.
 // Moves 12 B indices, about 8 B positions, 4 B rest area read a triangle; with raised masses 32 B a vertex.
 APSLK_KERNEL void measure_area_change(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
                                       __global float* partials, __global const uint* triangles,
                                       __global const float4* moved, __global const float4* motion,
-                                      __global const float* rest_areas) {
+                                      __global const float* rest, __global const float* pressure) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    store_area_partials(measure_triangles(cloths[c], parameters[c].enabled, triangles, moved, rest_areas), partials,
-                        scratch);
+    store_area_partials(measure_triangles(cloths[c], parameters[c].enabled, triangles, moved, rest), partials, scratch);
+#if APSLK_LIMITS_STRETCH
+    store_partial(partials, APSLK_PARTIAL_STRETCH_ROWS,
+                  group_sum(stretch_rows_at_work(cloths[c], parameters[c].enabled, pressure), scratch));
+#else
+    (void)pressure;
+#endif
     const apslk_raised_masses raised = raised_masses(cloths[c], parameters[c].raises_masses, moved, motion);
     store_partial(partials, APSLK_PARTIAL_RAISED, group_sum(raised.count, scratch));
     store_partial(partials, APSLK_PARTIAL_MASS_RATIO, group_max(raised.greatest_ratio, scratch));
@@ -24,12 +41,12 @@ APSLK_KERNEL void measure_area_change(__global const apslk_cloth* cloths, __glob
 // `motion`. Moves 12 B indices, about 16 B positions, 4 B rest area read, 4 B written a triangle.
 APSLK_KERNEL void measure_step(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
                                __global float* partials, __global const uint* triangles, __global const float4* moved,
-                               __global const float4* motion, __global const float* rest_areas,
+                               __global const float4* motion, __global const float* rest,
                                __global float* start_errors) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const bool in_small_steps = small_step_count(parameters[c]) > 0;
-    apslk_area_sums sums = measure_triangles(cloths[c], parameters[c].enabled, triangles, moved, rest_areas);
-    sums.not_finite += find_start_errors(cloths[c], in_small_steps, triangles, motion, rest_areas, start_errors);
+    apslk_area_sums sums = measure_triangles(cloths[c], parameters[c].enabled, triangles, moved, rest);
+    sums.not_finite += find_start_errors(cloths[c], in_small_steps, triangles, motion, rest, start_errors);
     store_area_partials(sums, partials, scratch);
 }

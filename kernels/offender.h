@@ -6,6 +6,7 @@
 
 #include "area_sums.h"
 #include "layout.h"
+#include "limits_stretch.h"
 #include "triangle_geometry.h"
 #include "vertex_motion.h"
 #include "work_group.h"
@@ -36,10 +37,10 @@ APSLK_INLINE apslk_offender_search search_for(bool broken, bool bad_vertices, ap
     return search;
 }
 
-// The first vertex or triangle found in this work-item's share. `rest_areas` are in the limiter's order.
+// The first vertex or triangle found in this work-item's share. `rest`: the limiter's rest values.
 APSLK_INLINE uint first_offender(apslk_offender_search search, apslk_cloth cloth, __global const uint* vertex_order,
                                  __global const uint* triangle_order, __global const uint* triangles,
-                                 __global const float4* moved, __global const float* rest_areas) {
+                                 __global const float4* moved, __global const float* rest) {
     uint first = APSLK_NOBODY;
     const uint vertices = search.bad_vertices ? cloth.vertex_count : 0u;
     for (uint v = (uint)get_local_id(0); v < vertices; v += APSLK_WORK_GROUP_SIZE) {
@@ -52,8 +53,14 @@ APSLK_INLINE uint first_offender(apslk_offender_search search, apslk_cloth cloth
     for (uint block = (uint)get_local_id(0); block < blocks; block += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + block * APSLK_LANES;
         const apslk_triangle_geometry triangle = load_triangles(triangles, moved, a);
-        const lanes rest_area = load_lanes(rest_areas, a);
-        const lanes witness = area_witness(triangle, rest_area), change = relative_change(triangle, rest_area);
+        const lanes rest_area = load_lanes(rest, a);
+        lanes witness = area_witness(triangle, rest_area), change = relative_change(triangle, rest_area);
+#if APSLK_LIMITS_STRETCH
+        const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
+        const lanes excess = stretch_excess(principal_stretch(triangle, shape).value, shape.ceiling);
+        witness += excess * excess;
+        change = fmax(change, excess);
+#endif
         const uint count = min((uint)APSLK_LANES, cloth.triangle_count - block * APSLK_LANES);
         for (uint n = 0; n < count; ++n) {
             const bool bad = search.bad_triangles && !(fabs(((const float*)&witness)[n]) < INFINITY);
@@ -68,9 +75,9 @@ APSLK_INLINE uint first_offender(apslk_offender_search search, apslk_cloth cloth
 APSLK_INLINE void name_offender(__global apslk_stats* stats, apslk_offender_search search, apslk_cloth cloth,
                                 __global const uint* vertex_order, __global const uint* triangle_order,
                                 __global const uint* triangles, __global const float4* moved,
-                                __global const float* rest_areas, __local float* scratch) {
+                                __global const float* rest, __local float* scratch) {
     const uint first =
-        group_min(first_offender(search, cloth, vertex_order, triangle_order, triangles, moved, rest_areas), scratch);
+        group_min(first_offender(search, cloth, vertex_order, triangle_order, triangles, moved, rest), scratch);
     if (get_local_id(0) == 0) {
         const bool named = first != APSLK_NOBODY;
         stats->offender = !named                ? APSLK_OFFENDER_NONE

@@ -8,6 +8,7 @@
 
 #include "gradients.h"
 #include "layout.h"
+#include "limits_stretch.h"
 #include "vertex_gather.h"
 #include "work_group.h"
 
@@ -41,13 +42,20 @@ APSLK_INLINE apslk_patch_range patches_of(apslk_cloth cloth, bool active) {
     return range;
 }
 
-// u = J̄ᵀ r on the vertices of a patch, those between `first` and `last` in patch_vertices.
+// u = J̄ᵀ r on the vertices of a patch, those between `first` and `last` in patch_vertices. `run`: of the arrays of
+// rows.
 APSLK_INLINE void gather_forces(uint first, uint last, __global const uint* patch_vertices,
                                 __global const uint* corner_offsets, __global const uint* corners,
-                                __global const apslk_gradients* gradients, __global const float* values,
+                                __global const apslk_gradients* gradients, __global const float* values, uint run,
                                 __local float4* forces) {
     for (uint n = first + (uint)get_local_id(0); n < last; n += APSLK_WORK_GROUP_SIZE)
+#if APSLK_LIMITS_STRETCH
+        forces[n - first] =
+            sum_over_corners_of_rows(corner_offsets, corners, gradients, values, run, patch_vertices[n]);
+#else
         forces[n - first] = sum_over_corners(corner_offsets, corners, gradients, values, patch_vertices[n]);
+    (void)run;
+#endif
 }
 
 // (J̄ u)_a in units of APSLK_GRADIENT_UNIT.
@@ -71,7 +79,7 @@ APSLK_INLINE float multiply_patches(apslk_cloth cloth, bool active, __global con
     float curvature = 0.0f;
     for (uint patch = range.begin; patch < range.end; ++patch) {
         const uint2 first = patches[patch], last = patches[patch + 1];
-        gather_forces(first.y, last.y, patch_vertices, corner_offsets, corners, gradients, residual, forces);
+        gather_forces(first.y, last.y, patch_vertices, corner_offsets, corners, gradients, residual, 0u, forces);
         group_barrier();
         for (uint a = first.x + (uint)get_local_id(0); a < last.x; a += APSLK_WORK_GROUP_SIZE) {
             APSLK_PREFETCH(gradients + a + APSLK_PREFETCH_TRIANGLES);

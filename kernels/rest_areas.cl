@@ -2,6 +2,7 @@
 // A⁰ of the caller's triangles from rest positions, once for a cloth. Reference: apsl::reference::areas.
 // Moves 12 B indices, 4 B order, 3 × (4 B order, 12 B positions, mostly from cache) read, 4 B written a triangle.
 #include "layout.h"
+#include "limits_stretch.h"
 #include "vertex_motion.h"
 #include "work_group.h"
 
@@ -23,3 +24,28 @@ APSLK_KERNEL void rest_areas(__global const apslk_cloth* cloths, __global const 
         areas[area_offset + triangle_order[a]] = 0.5f * length(cross(x1 - x0, x2 - x0));
     }
 }
+
+#if APSLK_LIMITS_STRETCH
+// M of the caller's triangles, row by row: the inverse of their rest edges in their plane, the first along x. Zeros
+// where a triangle has no area. Reference: apsl::reference::rest_shapes. Moves what rest_areas does, and 16 B written.
+APSLK_KERNEL void rest_shapes(__global const apslk_cloth* cloths, __global const uint* vertex_order,
+                              __global const uint* triangle_order, __global const uint* triangles,
+                              __global const float* rest_positions, ulong rest_position_offset, __global float* shapes,
+                              ulong shape_offset) {
+    const apslk_cloth cloth = cloths[get_group_id(1)];
+    const apslk_range range = share_of(cloth.triangle_count, true);
+    for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + t;
+        const float3 x0 = rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a]);
+        const float3 first =
+            rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a + 1]) - x0;
+        const float3 second =
+            rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a + 2]) - x0;
+        const float base = length(first), doubled = length(cross(first, second));
+        const float height = doubled / base, along = dot(first, second) / base;
+        const float4 shape =
+            doubled > 0.0f ? (float4)(1.0f / base, -along / doubled, 0.0f, 1.0f / height) : (float4)(0.0f);
+        vstore4(shape, triangle_order[a], shapes + shape_offset);
+    }
+}
+#endif

@@ -3,6 +3,7 @@
 // a call. Reference: apsl::reference, strain_limiter.
 #include "accept_or_reject.h"
 #include "layout.h"
+#include "limits_stretch.h"
 #include "offender.h"
 #include "work_group.h"
 
@@ -12,7 +13,14 @@ APSLK_INLINE apslk_area_change area_change(__global float* partials, uint groups
     const float squared = sum_partials(partials, APSLK_PARTIAL_SQUARED_CHANGE, groups, scratch);
     const float capped = sum_partials(partials, APSLK_PARTIAL_CAPPED_CHANGE, groups, scratch);
     const float measured = sum_partials(partials, APSLK_PARTIAL_MEASURED, groups, scratch);
-    return area_change_of(greatest, squared, capped, measured);
+    apslk_area_change change = area_change_of(greatest, squared, capped, measured);
+#if APSLK_LIMITS_STRETCH
+    change.max_stretch = max_partials(partials, APSLK_PARTIAL_MAX_STRETCH, groups, scratch);
+    change.max_excess = max_partials(partials, APSLK_PARTIAL_MAX_EXCESS, groups, scratch);
+    const float squared_excess = sum_partials(partials, APSLK_PARTIAL_SQUARED_EXCESS, groups, scratch);
+    change.rms_excess = measured > 0.0f ? sqrt(squared_excess / measured) : 0.0f;
+#endif
+    return change;
 }
 
 // Before small steps: the area change that the whole step would have, whether there is anything to do about it, and the
@@ -29,7 +37,7 @@ APSLK_KERNEL void judge_whole_step(__global const apslk_parameters* parameters, 
     states[c].greatest_mass = greatest_effective_mass(log_masses, movable);
     store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     if (not_finite > 0.0f) stats[c].status = APSLK_STATUS_DIVERGED;
-    if (not_finite > 0.0f || change.max <= parameters[c].target_area_change) states[c].stopped = 1;
+    if (not_finite > 0.0f || judged_max(change) <= parameters[c].target_area_change) states[c].stopped = 1;
 }
 
 // Algorithm 1, line 2: a sub-step is done unless the areas are at the target or something is not finite.
@@ -45,7 +53,7 @@ APSLK_KERNEL void begin_solve(__global const apslk_parameters* parameters, __glo
     if (sub_step == 0 && small_steps == 0) store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     const bool broken = not_finite > 0.0f || !isfinite(residual);
     // On the way the areas are not those of the end of the step.
-    const bool done = sub_step >= small_steps && change.max <= parameters[c].target_area_change;
+    const bool done = sub_step >= small_steps && judged_max(change) <= parameters[c].target_area_change;
     if (broken) stats[c].status = APSLK_STATUS_DIVERGED;
     if (broken || done || sub_step >= parameters[c].sub_steps) {
         states[c].stopped = 1;
@@ -70,6 +78,9 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_so
     const float extent = max_partials(partials, APSLK_PARTIAL_EXTENT, groups, scratch);
     const float raised = sum_partials(partials, APSLK_PARTIAL_RAISED, groups, scratch);
     const float mass_ratio = max_partials(partials, APSLK_PARTIAL_MASS_RATIO, groups, scratch);
+#if APSLK_LIMITS_STRETCH
+    const float stretch_rows = sum_partials(partials, APSLK_PARTIAL_STRETCH_ROWS, groups, scratch);
+#endif
     const bool diverged = bad_vertices || not_finite > 0.0f || stats[c].status == APSLK_STATUS_DIVERGED;
     const bool none = stats[c].sub_steps == 0;
     if (none && get_local_id(0) == 0) store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
@@ -77,7 +88,7 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_so
     const apslk_area_change initial = stored_initial(states + c, stats + c);
     const apslk_verdict verdict =
         judge(initial, change, greatest_change_at_rest(extent, change.measured, cloths[c].triangle_count));
-    name_offender(stats + c, search_for(diverged, bad_vertices, verdict, change.max), cloths[c], vertex_order,
+    name_offender(stats + c, search_for(diverged, bad_vertices, verdict, judged_max(change)), cloths[c], vertex_order,
                   triangle_order, triangles, moved, rest_areas, scratch);
     group_memory_barrier();  // all have read the status
     if (get_local_id(0) != 0) return;
@@ -88,4 +99,7 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_so
     if (stats[c].status == APSLK_STATUS_OFF) return;
     stats[c].raised_vertices = (uint)raised;
     stats[c].greatest_mass_ratio = mass_ratio;
+#if APSLK_LIMITS_STRETCH
+    stats[c].stretch_rows = none ? 0u : (uint)stretch_rows;
+#endif
 }

@@ -7,8 +7,10 @@
 #include "area_sums.h"
 #include "gradients.h"
 #include "layout.h"
+#include "limits_stretch.h"
 #include "regularization.h"
 #include "small_steps.h"
+#include "stretch_rows.h"
 #include "triangle_geometry.h"
 #include "work_group.h"
 
@@ -17,6 +19,13 @@
 #define APSLK_CHEBYSHEV 0
 #endif
 
+// 1: each triangle has a ceiling of its own.
+#ifndef APSLK_STRETCH_CEILING_PER_TRIANGLE
+#define APSLK_STRETCH_CEILING_PER_TRIANGLE 0
+#endif
+
+#define APSLK_MARGIN (APSLK_LIMITS_STRETCH ? APSLK_ROWS_BOUND_MARGIN : APSLK_BOUND_MARGIN)
+
 // s = 1/√(α D); 0 where nothing can move the triangle, which makes its pressure 0 by definition.
 APSLK_INLINE lanes jacobi_scale(lanes scaled_diagonal, lanes rest_area) {
     const lanes scale = select((lanes)(0.0f), 1.0f / sqrt(scaled_diagonal), scaled_diagonal > 0.0f);
@@ -24,9 +33,8 @@ APSLK_INLINE lanes jacobi_scale(lanes scaled_diagonal, lanes rest_area) {
 }
 
 // Two words of 16-bit fixed point: x and y, z and zero.
-APSLK_INLINE void pack_gradient(apslk_triangle_geometry t, uint corner, lanes scale, lanes_int* words) {
-    const lanes4 g = cross_product(t.normal, t.edge[corner]);
-    const lanes factor = 32767.0f * scale * sqrt(0.5f * t.inverse_mass[corner]);
+APSLK_INLINE void pack_gradient(lanes4 g, lanes inverse_mass, lanes scale, lanes_int* words) {
+    const lanes factor = 32767.0f * scale * sqrt(0.5f * inverse_mass);
     const lanes_int x = to_int(rint(factor * g.x)), y = to_int(rint(factor * g.y)), z = to_int(rint(factor * g.z));
     words[0] = (x & 0xffff) | (y << 16);
     words[1] = z & 0xffff;
@@ -34,7 +42,7 @@ APSLK_INLINE void pack_gradient(apslk_triangle_geometry t, uint corner, lanes sc
 
 // The caller's values in the limiter's order. The padding keeps what it was made with: no rest area.
 APSLK_INLINE void order_values(apslk_cloth cloth, bool active, __global const uint* triangle_order,
-                               __global float* ordered_rest_areas, __global float* ordered_scaling,
+                               __global float* ordered_rest, __global float* ordered_scaling,
                                __global const float* rest_areas, __global const float* regularization) {
     const apslk_range range = share_of(cloth.triangle_count, active);
     for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
@@ -48,20 +56,81 @@ APSLK_INLINE void order_values(apslk_cloth cloth, bool active, __global const ui
         (void)ordered_scaling;
         (void)regularization;
 #endif
-        ordered_rest_areas[a] = rest_area;
+        ordered_rest[a] = rest_area;
     }
 }
 
-// B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|². Reference: apsl::reference::diagonal_bound. Written out: where LLVM unrolls it as
-// a loop, it leaves an intrinsic that Oclgrind does not have.
-APSLK_INLINE lanes bounded_diagonal(apslk_triangle_geometry t, __global const uint* triangles,
-                                    __global const float* vertex_bounds, uint first) {
+// The caller's rest shapes, turned about in their planes so that three numbers hold each, and ceilings likewise.
+// `stretch_ceilings` has one for each triangle, where there are such; otherwise `ceiling` is that of all.
+APSLK_INLINE void order_rest_shapes(apslk_cloth cloth, bool active, float ceiling, __global const uint* triangle_order,
+                                    __global float* ordered_rest, __global const float* rest_shapes,
+                                    __global const float* stretch_ceilings) {
+    const apslk_range range = share_of(cloth.triangle_count, active);
+    for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
+        const uint a = cloth.triangle_begin + t;
+        const float4 m = vload4(triangle_order[a], rest_shapes);
+#if APSLK_STRETCH_CEILING_PER_TRIANGLE
+        ceiling = stretch_ceilings[triangle_order[a]];
+        if (ceiling != 0.0f && ceiling < APSLK_LEAST_STRETCH_CEILING) ceiling = APSLK_LEAST_STRETCH_CEILING;
+#else
+        (void)stretch_ceilings;
+#endif
+        if (!all(isfinite(m)) || !isfinite(ceiling)) ordered_rest[a] = NAN;  // one witness for all
+        const float m11 = hypot(m.z, m.w), determinant = m.x * m.w - m.y * m.z;
+        const bool has_shape = ordered_rest[a] > 0.0f && determinant != 0.0f;
+        ordered_rest[APSLK_REST_SHAPE_00 * cloth.run + a] = has_shape ? determinant / m11 : 0.0f;
+        ordered_rest[APSLK_REST_SHAPE_01 * cloth.run + a] = has_shape ? (m.x * m.z + m.y * m.w) / m11 : 0.0f;
+        ordered_rest[APSLK_REST_SHAPE_11 * cloth.run + a] = has_shape ? m11 : 0.0f;
+        ordered_rest[APSLK_CEILING * cloth.run + a] = has_shape ? ceiling : 0.0f;
+    }
+}
+
+// B_a = Σ_{i∈a} s_i ½ w_i |g_{a,i}|² of rows with these gradients. Reference: apsl::reference::diagonal_bound. Written
+// out: where LLVM unrolls it as a loop, it leaves an intrinsic that Oclgrind does not have.
+APSLK_INLINE lanes bounded_diagonal(apslk_triangle_geometry t, lanes4 g0, lanes4 g1, lanes4 g2,
+                                    __global const uint* triangles, __global const float* vertex_bounds, uint first) {
     const lanes s0 = load_corner_values(triangles, vertex_bounds, first, 0);
     const lanes s1 = load_corner_values(triangles, vertex_bounds, first, 1);
     const lanes s2 = load_corner_values(triangles, vertex_bounds, first, 2);
-    return 0.5f *
-           (s0 * t.inverse_mass[0] * squared_length(t.edge[0]) + s1 * t.inverse_mass[1] * squared_length(t.edge[1]) +
-            s2 * t.inverse_mass[2] * squared_length(t.edge[2]));
+    return 0.5f * (s0 * t.inverse_mass[0] * squared_length(g0) + s1 * t.inverse_mass[1] * squared_length(g1) +
+                   s2 * t.inverse_mass[2] * squared_length(g2));
+}
+
+typedef struct {
+    lanes squares;    // of the right-hand side
+    lanes take_part;  // 1, or 0
+} apslk_assembled_stretches;
+
+// The stretch rows of triangles whose area rows have `area_excess` for right-hand side and `area_scale`.
+APSLK_INLINE apslk_assembled_stretches
+assemble_stretch_rows(apslk_cloth cloth, apslk_triangle_geometry t, lanes rest_area, lanes area_excess,
+                      lanes area_scale, __global const uint* triangles, __global const float* vertex_bounds,
+                      __global apslk_gradients* gradients, __global float* residual, __global float* scaled_diagonal,
+                      __global const float* rest, float error_left, __global const float* start_errors, uint a) {
+    const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
+    lanes ceiling = shape.ceiling;
+    if (error_left > 0.0f) ceiling += error_left * load_lanes(start_errors + cloth.run, a);
+    const apslk_stretch_row row = stretch_row(t, shape, rest_area, area_excess, ceiling);
+    const lanes bound = APSLK_MARGIN * bounded_diagonal(t, row.gradient[0], row.gradient[1], row.gradient[2], triangles,
+                                                        vertex_bounds, a);
+    const lanes scale = jacobi_scale(bound, rest_area);
+    const lanes value = select((lanes)(0.0f), row.value, scale > 0.0f);
+    apslk_assembled_stretches assembled;
+    assembled.squares = value * value;
+    assembled.take_part = select((lanes)(0.0f), (lanes)(1.0f), scale > 0.0f);
+    if (!(max_of_lanes(assembled.take_part) > 0.0f)) return assembled;
+    __global apslk_gradients* rows = gradients + cloth.run;
+    lanes_int words[8];
+    pack_gradient(row.gradient[0], t.inverse_mass[0], scale, words);
+    pack_gradient(row.gradient[1], t.inverse_mass[1], scale, words + 2);
+    pack_gradient(row.gradient[2], t.inverse_mass[2], scale, words + 4);
+    words[6] = bits_of(row.share * scale * select((lanes)(0.0f), 1.0f / area_scale, area_scale > 0.0f));
+    const lanes weight = scale * rest_area * row.stretch;
+    words[7] = bits_of(select((lanes)(0.0f), 1.0f / weight, weight > 0.0f));
+    store_records(words, (__global int4*)rows, a);
+    store_lanes(scale * value, residual + cloth.run, a);
+    store_lanes(bound, scaled_diagonal + cloth.run, a);
+    return assembled;
 }
 
 typedef struct {
@@ -72,14 +141,14 @@ typedef struct {
 // gradients[a], residual[a] = s b, scaled_diagonal[a] = α D. b = A − A⁰, in small steps less the share `error_left` of
 // `start_errors`. `alpha` holds for all triangles, unless `regularization` has one for each. Both come from
 // order_values. For a Chebyshev solve `regularization` holds s_i of the vertices, B takes the place of α D, and there
-// is no damping.
+// is no damping; with a stretch ceiling stretch rows follow in runs of their own. `rest`: the limiter's rest values.
 APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool active, float alpha, float damping,
                                                     float adaptive_factor, __global const uint* triangles,
                                                     __global const float4* moved, __global apslk_gradients* gradients,
                                                     __global float* residual, __global float* scaled_diagonal,
-                                                    __global const float* rest_areas,
-                                                    __global const float* regularization, bool in_small_steps,
-                                                    float error_left, __global const float* start_errors) {
+                                                    __global const float* rest, __global const float* regularization,
+                                                    bool in_small_steps, float error_left,
+                                                    __global const float* start_errors) {
     const apslk_range range = share_of(blocks_of(cloth), active);
     apslk_assembly_sums sums;
     sums.areas = no_areas();
@@ -88,7 +157,7 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
     for (uint block = range.first; block < range.end; block += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + block * APSLK_LANES;
         const apslk_triangle_geometry triangle = load_triangles(triangles, moved, a);
-        const lanes rest_area = load_lanes(rest_areas, a);
+        const lanes rest_area = load_lanes(rest, a);
         lanes excess = triangle.area - rest_area;
         if (in_small_steps) {  // uniform
             if (error_left > 0.0f) excess -= error_left * load_lanes(start_errors, a);
@@ -99,8 +168,12 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
         (void)alpha;
         (void)damping;
         (void)adaptive_factor;
-        const lanes damped = APSLK_BOUND_MARGIN * bounded_diagonal(triangle, triangles, regularization, a),
-                    shift = 0.0f;
+        // |g| is the length of the edge.
+        const lanes damped = APSLK_MARGIN * bounded_diagonal(triangle, triangle.edge[0], triangle.edge[1],
+                                                             triangle.edge[2], triangles, regularization, a);
+#if !APSLK_LIMITS_STRETCH
+        const lanes shift = 0.0f;
+#endif
 #else
 #if APSLK_REGULARIZATION_PER_TRIANGLE
         (void)alpha;
@@ -116,11 +189,21 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
         const lanes stretch = select((lanes)(0.0f), excess, scale > 0.0f);
         const lanes r = scale * stretch;
 
+#if APSLK_LIMITS_STRETCH
+        const apslk_assembled_stretches stretches =
+            assemble_stretch_rows(cloth, triangle, rest_area, stretch, scale, triangles, regularization, gradients,
+                                  residual, scaled_diagonal, rest, error_left, start_errors, a);
+        sums.squares += stretches.squares;
+#endif
         lanes_int words[8];
-        pack_gradient(triangle, 0, scale, words);
-        pack_gradient(triangle, 1, scale, words + 2);
-        pack_gradient(triangle, 2, scale, words + 4);
+        pack_gradient(cross_product(triangle.normal, triangle.edge[0]), triangle.inverse_mass[0], scale, words);
+        pack_gradient(cross_product(triangle.normal, triangle.edge[1]), triangle.inverse_mass[1], scale, words + 2);
+        pack_gradient(cross_product(triangle.normal, triangle.edge[2]), triangle.inverse_mass[2], scale, words + 4);
+#if APSLK_LIMITS_STRETCH
+        words[6] = bits_of(stretches.take_part);
+#else
         words[6] = bits_of(shift);
+#endif
         words[7] = bits_of(select((lanes)(0.0f), 1.0f / (scale * triangle.area), scale * triangle.area > 0.0f));
         store_records(words, (__global int4*)gradients, a);
         store_lanes(r, residual, a);
@@ -128,35 +211,49 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
         sums.squares += stretch * stretch;
         sums.scaled_squares += r * r;
         add_areas(&sums.areas, triangle, rest_area);
+#if APSLK_LIMITS_STRETCH
+        add_stretches(&sums.areas, cloth, triangle, rest_area, rest, a);
+#endif
     }
     return sums;
 }
 
-// start_errors[a] = A − A⁰ at the start of the step, whose vertices are in `start`; 0 where there is no rest area.
-// Returns how many of this work-item's are not finite.
+// start_errors[a] = A − A⁰ at the start of the step, whose vertices are in `start`, and with a stretch ceiling in a run
+// of its own the excess over it; 0 where there is no rest area. Returns how many of this work-item's are not finite.
 APSLK_INLINE lanes find_start_errors(apslk_cloth cloth, bool active, __global const uint* triangles,
-                                     __global const float4* start, __global const float* rest_areas,
+                                     __global const float4* start, __global const float* rest,
                                      __global float* start_errors) {
     const apslk_range range = share_of(blocks_of(cloth), active);
     lanes not_finite = 0.0f;
     for (uint block = range.first; block < range.end; block += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + block * APSLK_LANES;
-        const lanes area = load_triangles(triangles, start, a).area, rest_area = load_lanes(rest_areas, a);
-        const lanes error = select((lanes)(0.0f), area - rest_area, rest_area > 0.0f);
+        const apslk_triangle_geometry triangle = load_triangles(triangles, start, a);
+        const lanes rest_area = load_lanes(rest, a);
+        const lanes error = select((lanes)(0.0f), triangle.area - rest_area, rest_area > 0.0f);
         store_lanes(error, start_errors, a);
+#if APSLK_LIMITS_STRETCH
+        const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
+        store_lanes(stretch_excess(principal_stretch(triangle, shape).value, shape.ceiling), start_errors + cloth.run,
+                    a);
+#endif
         not_finite += select((lanes)(1.0f), (lanes)(0.0f), fabs(error) < INFINITY);
     }
     return not_finite;
 }
 
-// The areas alone.
+// Areas and stretches alone.
 APSLK_INLINE apslk_area_sums measure_triangles(apslk_cloth cloth, bool active, __global const uint* triangles,
-                                               __global const float4* moved, __global const float* rest_areas) {
+                                               __global const float4* moved, __global const float* rest) {
     const apslk_range range = share_of(blocks_of(cloth), active);
     apslk_area_sums sums = no_areas();
     for (uint block = range.first; block < range.end; block += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + block * APSLK_LANES;
-        add_areas(&sums, load_triangles(triangles, moved, a), load_lanes(rest_areas, a));
+        const apslk_triangle_geometry triangle = load_triangles(triangles, moved, a);
+        const lanes rest_area = load_lanes(rest, a);
+        add_areas(&sums, triangle, rest_area);
+#if APSLK_LIMITS_STRETCH
+        add_stretches(&sums, cloth, triangle, rest_area, rest, a);
+#endif
     }
     return sums;
 }

@@ -7,6 +7,7 @@
 #include "effective_mass.h"
 #include "gradients.h"
 #include "layout.h"
+#include "limits_stretch.h"
 #include "small_steps.h"
 #include "vertex_gather.h"
 #include "work_group.h"
@@ -130,7 +131,12 @@ APSLK_INLINE void displace_vertices(apslk_cloth cloth, bool active, __global con
         const float4 x = moved[i];
         // One expression, which the compiler may fuse.
         if (x.w > 0.0f)
-            moved[i] = x - sqrt(2.0f * x.w) * sum_over_corners(corner_offsets, corners, gradients, pressure, i);
+            moved[i] = x - sqrt(2.0f * x.w) *
+#if APSLK_LIMITS_STRETCH
+                               sum_over_corners_of_rows(corner_offsets, corners, gradients, pressure, cloth.run, i);
+#else
+                               sum_over_corners(corner_offsets, corners, gradients, pressure, i);
+#endif
     }
 }
 
@@ -164,10 +170,23 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
             float tension = 0.0f;  // K w'
             float4 change = (float4)(0.0f);
             if (small_step.solved) {
+#if APSLK_LIMITS_STRETCH
+                const apslk_corner_sums sums =
+                    sums_over_corners_of_rows(corner_offsets, corners, gradients, pressure, cloth.run, i);
+#else
                 const apslk_corner_sums sums = sums_over_corners(corner_offsets, corners, gradients, pressure, i);
+#endif
                 tension = sums.stiffness;
                 change = -sqrt(2.0f * effective) * sums.force;
             }
+#if APSLK_LIMITS_STRETCH
+            const float stiffness = counted_stiffness(given, effective, tension);
+            change *= fmin(inverse_mass_under_tension(given, stiffness) / effective, 1.0f);
+            if (small_step.renews_masses) {
+                total.w = fmax(stiffness, APSLK_STIFFNESS_KEPT * total.w);
+                x.w = inverse_mass_under_tension(given, total.w);
+            }
+#else
             // Of most vertices the mass stays as given, and K, which takes a division, is of no use.
             if (effective < given || tension > small_step.held_tension) {
                 const float stiffness = tension / effective;
@@ -177,6 +196,7 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
                     x.w = effective_inverse_mass(given, total.w, small_step.greatest_mass);
                 }
             }
+#endif
             if (small_step.solved) {
                 x += change;  // its w is zero
                 step += parts * change;

@@ -6,6 +6,8 @@
 // compiler.
 #pragma once
 
+#include "../kernels/constants.h"
+
 #include <apsl/options.hpp>
 #include <apsl/parameters.hpp>
 
@@ -26,9 +28,11 @@ struct Bounds {
     bool greatest_excluded = false;
     const char* zero = nullptr;  ///< what 0 means, where it is legal beside the rest
 
+    /// Of a 32-bit number: 1.01f is at or above 1.01.
     constexpr bool hold(double value) const {
         if (zero && value == 0.0) return true;
-        return (least_excluded ? value > least : value >= least) &&
+        const double lower = static_cast<float>(least);
+        return (least_excluded ? value > lower : value >= lower) &&
                (greatest_excluded ? value < greatest : value <= greatest);
     }
 };
@@ -43,6 +47,9 @@ struct Field {
     bool in_scenes =
         true;  ///< a key of strain_limiting; otherwise a scene says it elsewhere, or leaves it to the device
 };
+
+/// Lower ceilings leave sub-steps nothing to work with.
+inline constexpr float least_stretch_ceiling = APSLK_LEAST_STRETCH_CEILING;
 
 inline constexpr Bounds any_whole{.least = 0.0};
 inline constexpr Bounds at_least_one{.least = 1.0};
@@ -66,9 +73,15 @@ inline constexpr std::tuple parameter_fields{
           Bounds{.least = 1.0, .least_excluded = true, .zero = "the same in every sub-step"}, "",
           "α of the first sub-step. From there to regularization, in the last, α − 1 changes by the same factor a "
           "sub-step. 0: α is the same in all."},
+    Field{"stretch_ceiling", &Parameters::stretch_ceiling, Bounds{.least = 1.01, .zero = "areas alone"}, "",
+          "No principal stretch above this multiple of the rest shape. 0: areas alone. With areas held, edges end "
+          "between "
+          "1/this and this. Not read where each triangle has its own."},
     Field{"stepping", &Parameters::stepping, Bounds{}, "",
           "Which positions each sub-step linearises about. whole_step: the end of the step. small_steps: all but the "
-          "last move on by an equal part of the step and correct there. automatic: small steps from 20 sub-steps up."},
+          "last move on by an equal part of the step and correct there. automatic: small steps from 20 sub-steps up, "
+          "with a "
+          "stretch ceiling from 2."},
     Field{"enabled", &Parameters::enabled, Bounds{}, "", "false: the cloth is left alone.", false},
 };
 
@@ -88,10 +101,16 @@ inline constexpr std::tuple option_fields{
     Field{"solver", &Options::solver, Bounds{}, "",
           "chebyshev: a fixed polynomial with the reach of α in place of CG, one launch an iteration. It requires "
           "matrix consistent, apply matrix_free, one α for all triangles, warm_start_sub_steps 0 and "
-          "adaptive_threshold 0."},
+          "adaptive_threshold 0. automatic: chebyshev with a stretch ceiling, conjugate_gradient otherwise."},
     Field{"bound_interval", &Options::bound_interval, at_least_one, "",
           "By chebyshev: sub-steps from one bound of the matrix to the next. 1 for garments; as many as there are "
           "sub-steps where triangles keep their shape."},
+    Field{"limits_stretch", &Options::limits_stretch, Bounds{}, "",
+          "Principal stretches are limited along with the areas, and rest shapes given with every call. It requires "
+          "solver chebyshev and bound_interval 1.",
+          false},
+    Field{"stretch_ceiling_per_triangle", &Options::stretch_ceiling_per_triangle, Bounds{}, "",
+          "Each triangle has its own stretch ceiling, given with every call.", false},
 };
 
 /// Of the caller's buffers.
@@ -127,7 +146,8 @@ inline constexpr std::array names_of<Stepping>{std::pair{Stepping::automatic, "a
                                                std::pair{Stepping::small_steps, "small_steps"}};
 template <>
 inline constexpr std::array names_of<Solver>{std::pair{Solver::conjugate_gradient, "conjugate_gradient"},
-                                             std::pair{Solver::chebyshev, "chebyshev"}};
+                                             std::pair{Solver::chebyshev, "chebyshev"},
+                                             std::pair{Solver::automatic, "automatic"}};
 
 /// The name of an enumeration's value; empty where it has none.
 template <class Enum>

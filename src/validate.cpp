@@ -77,10 +77,18 @@ void validate(const Options& options) {
     const bool matrix_free = options.matrix == Matrix::consistent && options.apply == Apply::matrix_free;
     if (options.execution == Execution::one_group) {
         if (!matrix_free) invalid("execution is one_group, which needs the consistent matrix, matrix-free");
-        if (options.solver != Solver::conjugate_gradient)
+        if (resolved_solver(options) != Solver::conjugate_gradient)
             invalid("execution is one_group, which needs solver conjugate_gradient");
     }
-    if (options.solver == Solver::chebyshev) {
+    if (options.stretch_ceiling_per_triangle && !options.limits_stretch)
+        invalid("stretch_ceiling_per_triangle is on, which needs limits_stretch");
+    if (options.limits_stretch) {
+        if (resolved_solver(options) != Solver::chebyshev)
+            invalid("limits_stretch is on, which needs solver chebyshev");
+        if (options.bound_interval != 1)
+            invalid("bound_interval is " + std::to_string(options.bound_interval) + ", expected 1 with limits_stretch");
+    }
+    if (resolved_solver(options) == Solver::chebyshev) {
         if (!matrix_free) invalid("solver is chebyshev, which needs the consistent matrix, matrix-free");
         if (options.warm_start_sub_steps > 0) invalid("solver is chebyshev, which takes no warm_start_sub_steps");
         if (options.regularization_per_triangle)
@@ -93,7 +101,10 @@ void validate(const Options& options, const Parameters& parameters) {
     validate(parameters);
     if (options.positions_only && parameters.stepping == Stepping::small_steps)
         invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
-    if (options.solver == Solver::chebyshev && parameters.adaptive_threshold > 0)
+    if (parameters.stretch_ceiling > 0.0f && !options.limits_stretch)
+        invalid("stretch_ceiling is " + number(parameters.stretch_ceiling) +
+                ", expected 0: Options::limits_stretch is off");
+    if (resolved_solver(options) == Solver::chebyshev && parameters.adaptive_threshold > 0)
         invalid("adaptive_threshold is " + std::to_string(parameters.adaptive_threshold) +
                 ", expected 0: Options::solver is chebyshev, which has no iterations to go by");
 }

@@ -9,25 +9,60 @@
 
 namespace apsl::python {
 
-Array<double> areas(py::handle positions, py::handle triangles) {
+namespace {
+
+/// x₁ − x₀ and x₂ − x₀ of a triangle.
+struct TwoEdges {
+    std::array<double, 3> first, second;
+
+    double doubled_area() const {
+        const auto& [a, b] = *this;
+        return std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+    }
+};
+
+std::vector<TwoEdges> edges(py::handle positions, py::handle triangles) {
     const Array<double> points = vectors<double>(positions, "positions", std::nullopt);
     const std::vector<Triangle> corners = triangle_list(triangles);
     const auto at = points.unchecked<2>();
-    Array<double> result(static_cast<py::ssize_t>(corners.size()));
-    double* area = result.mutable_data();
+    std::vector<TwoEdges> all(corners.size());
     for (std::size_t t = 0; t < corners.size(); ++t) {
         const auto& [i, j, k] = corners[t];
         for (const std::uint32_t vertex : corners[t])
             if (vertex >= points.shape(0))
                 refuse("triangles", "vertex " + std::to_string(vertex) + " in triangle " + std::to_string(t),
                        "0 to " + std::to_string(points.shape(0) - 1) + ", as there are so many positions");
-        std::array<double, 3> a{};
-        std::array<double, 3> b{};
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
-            a[axis] = at(j, axis) - at(i, axis);
-            b[axis] = at(k, axis) - at(i, axis);
+            all[t].first[axis] = at(j, axis) - at(i, axis);
+            all[t].second[axis] = at(k, axis) - at(i, axis);
         }
-        area[t] = 0.5 * std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+    }
+    return all;
+}
+
+}  // namespace
+
+Array<double> areas(py::handle positions, py::handle triangles) {
+    const std::vector<TwoEdges> all = edges(positions, triangles);
+    Array<double> result(static_cast<py::ssize_t>(all.size()));
+    double* area = result.mutable_data();
+    for (const TwoEdges& two : all) *area++ = 0.5 * two.doubled_area();
+    return result;
+}
+
+Array<double> rest_shapes(py::handle positions, py::handle triangles) {
+    const std::vector<TwoEdges> all = edges(positions, triangles);
+    Array<double> result({static_cast<py::ssize_t>(all.size()), py::ssize_t{4}});
+    double* shape = result.mutable_data();
+    for (const TwoEdges& two : all) {
+        const auto& [a, b] = two;
+        const double length = std::hypot(a[0], a[1], a[2]), doubled = two.doubled_area();
+        const double along = (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / length;
+        const bool has_area = doubled > 0.0;
+        *shape++ = has_area ? 1.0 / length : 0.0;
+        *shape++ = has_area ? -along / doubled : 0.0;
+        *shape++ = 0.0;
+        *shape++ = has_area ? length / doubled : 0.0;
     }
     return result;
 }

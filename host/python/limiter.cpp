@@ -39,6 +39,8 @@ Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle devic
     inverse_masses_ = make_buffer(vertex_count_);
     rest_areas_ = make_buffer(triangle_count_);
     if (options.regularization_per_triangle) regularization_ = make_buffer(triangle_count_);
+    if (options.limits_stretch) rest_shapes_ = make_buffer(4 * triangle_count_);
+    if (options.stretch_ceiling_per_triangle) stretch_ceilings_ = make_buffer(triangle_count_);
 }
 
 host::BufferHandle Limiter::make_buffer(std::size_t floats) {
@@ -63,16 +65,24 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
     const Array<float> given_velocities = vectors<float>(velocities, "velocities", vertex_count_);
     const Array<float> given_masses = numbers<float>(inverse_masses, "inverse_masses", vertex_count_);
     const Array<float> given_areas = numbers<float>(rest_areas, "rest_areas", triangle_count_);
-    py::dict settings(arguments);
-    std::optional<Array<float>> given_regularization;
-    if (regularization_) {
-        if (!settings.contains("regularization"))
-            refuse("regularization", "nothing",
-                   "an array of real numbers (limiter made with regularization_per_triangle)");
-        given_regularization = numbers<float>(settings["regularization"], "regularization", triangle_count_);
-        settings = settings.attr("copy")();
-        settings.attr("pop")("regularization");
-    }
+    py::dict settings(arguments.attr("copy")());
+    // One of the arrays that a call takes beside parameters, where the limiter was made for it.
+    const auto taken = [&](const host::BufferHandle& buffer, const char* name, const char* option, std::size_t count) {
+        std::optional<Array<float>> given;
+        if (!buffer) return given;
+        if (!settings.contains(name))
+            refuse(name, "nothing", std::string("an array of real numbers (limiter made with ") + option + ")");
+        py::object value = settings.attr("pop")(name);
+        // A row a triangle.
+        if (count > triangle_count_) value = py::module_::import("numpy").attr("asarray")(value).attr("reshape")(-1);
+        given = numbers<float>(value, name, count);
+        return given;
+    };
+    const auto given_regularization =
+        taken(regularization_, "regularization", "regularization_per_triangle", triangle_count_);
+    const auto given_shapes = taken(rest_shapes_, "rest_shapes", "limits_stretch", 4 * triangle_count_);
+    const auto given_ceilings =
+        taken(stretch_ceilings_, "stretch_ceiling", "stretch_ceiling_per_triangle", triangle_count_);
     const Parameters parameters = with_arguments(Parameters{}, settings, "limit", parameter_fields);
     Array<float> limited({static_cast<py::ssize_t>(vertex_count_), py::ssize_t{3}});
     float* const result = limited.mutable_data();
@@ -85,11 +95,15 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
         upload(inverse_masses_, given_masses.data(), vertex_count_);
         upload(rest_areas_, given_areas.data(), triangle_count_);
         if (given_regularization) upload(regularization_, given_regularization->data(), triangle_count_);
+        if (given_shapes) upload(rest_shapes_, given_shapes->data(), 4 * triangle_count_);
+        if (given_ceilings) upload(stretch_ceilings_, given_ceilings->data(), triangle_count_);
         const Buffers buffers{.positions = {positions_.get()},
                               .velocities = {velocities_.get()},
                               .inverse_masses = {inverse_masses_.get()},
                               .rest_areas = {rest_areas_.get()},
-                              .regularization = {regularization_.get()}};
+                              .regularization = {regularization_.get()},
+                              .rest_shapes = {rest_shapes_.get()},
+                              .stretch_ceilings = {stretch_ceilings_.get()}};
         const host::EventHandle filtered(limiter_->enqueue(queue_.get(), buffers, parameters));
         const host::EventHandle read(limiter_->read_stats(queue_.get(), {&stats, 1}));
         const cl_event read_event = read.get();

@@ -40,7 +40,9 @@ private:
     host::BufferHandle velocities_;
     host::BufferHandle inverse_masses_;
     host::BufferHandle rest_areas_;
-    host::BufferHandle regularization_;  // where Options::regularization_per_triangle
+    host::BufferHandle regularization_;    // where Options::regularization_per_triangle
+    host::BufferHandle rest_shapes_;       // where Options::limits_stretch
+    host::BufferHandle stretch_ceilings_;  // where Options::stretch_ceiling_per_triangle
 };
 
 }  // namespace apsl::python

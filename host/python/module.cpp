@@ -46,6 +46,7 @@ PYBIND11_MODULE(_core, module) {
     py::register_exception_translator(translate);
     module.def("devices", device_dicts);
     module.def("rest_areas", areas, py::arg("positions"), py::arg("triangles"));
+    module.def("rest_shapes", rest_shapes, py::arg("positions"), py::arg("triangles"));
     module.def("area_change", area_change, py::arg("positions"), py::arg("triangles"), py::arg("rest_areas"));
     module.def("default_parameters", [] { return to_dict(Parameters{}, parameter_fields); });
     py::class_<Limiter>(module, "Limiter")

@@ -34,6 +34,12 @@ inline constexpr std::tuple stats_fields{
     StatsField{"offender_index", &Stats::offender_index},
     StatsField{"raised_vertices", &Stats::raised_vertices},
     StatsField{"greatest_mass_ratio", &Stats::greatest_mass_ratio},
+    StatsField{"max_stretch", &Stats::max_stretch},
+    StatsField{"max_stretch_excess", &Stats::max_stretch_excess},
+    StatsField{"rms_stretch_excess", &Stats::rms_stretch_excess},
+    StatsField{"initial_max_stretch_excess", &Stats::initial_max_stretch_excess},
+    StatsField{"initial_rms_stretch_excess", &Stats::initial_rms_stretch_excess},
+    StatsField{"stretch_rows", &Stats::stretch_rows},
 };
 
 }  // namespace apsl::python

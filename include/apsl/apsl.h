@@ -84,7 +84,8 @@ typedef enum apsl_stepping {
 /** How the system of a sub-step is solved. */
 typedef enum apsl_solver {
     APSL_SOLVER_CONJUGATE_GRADIENT = 0, /**< of the damped matrix, to the tolerance */
-    APSL_SOLVER_CHEBYSHEV = 1           /**< a fixed polynomial with the reach of alpha, no sums over the cloth */
+    APSL_SOLVER_CHEBYSHEV = 1,          /**< a fixed polynomial with the reach of alpha, no sums over the cloth */
+    APSL_SOLVER_AUTOMATIC = 2           /**< Chebyshev with limits_stretch, Conjugate Gradient otherwise */
 } apsl_solver;
 
 /** apsl::Topology behind a handle: immutable, may be shared between limiters and threads. */
@@ -94,21 +95,23 @@ typedef struct apsl_limiter apsl_limiter;
 
 /** apsl::Options: what is compiled in. Begin with apsl_default_options(). */
 typedef struct apsl_options {
-    int32_t matrix;                      /**< apsl_matrix */
-    int32_t apply;                       /**< apsl_apply */
-    int32_t execution;                   /**< apsl_execution */
-    uint32_t work_group_size;            /**< a power of two; 0 takes what suits the device */
-    uint32_t position_stride;            /**< floats from one vertex to the next, >= 3; 1 and more with runs */
-    uint32_t velocity_stride;            /**< likewise */
-    uint32_t position_component_stride;  /**< floats from x to y to z: 1 side by side, else runs of their own */
-    uint32_t velocity_component_stride;  /**< likewise */
-    uint32_t inverse_mass_stride;        /**< floats from one to the next, >= 1 */
-    int32_t positions_only;              /**< not 0: no velocities; positions are the end of the step, in and out */
-    int32_t regularization_per_triangle; /**< not 0: a regularization buffer is given with every call */
-    uint32_t warm_start_sub_steps;       /**< sub-steps whose pressures the next call's solves start from */
-    int32_t solver;                      /**< apsl_solver */
-    uint32_t bound_interval;             /**< by Chebyshev, >= 1: sub-steps from one bound of the matrix to the next */
-    uint32_t reserved[6];                /**< zeros; room for fields to come, so that the size stays */
+    int32_t matrix;                       /**< apsl_matrix */
+    int32_t apply;                        /**< apsl_apply */
+    int32_t execution;                    /**< apsl_execution */
+    uint32_t work_group_size;             /**< a power of two; 0 takes what suits the device */
+    uint32_t position_stride;             /**< floats from one vertex to the next, >= 3; 1 and more with runs */
+    uint32_t velocity_stride;             /**< likewise */
+    uint32_t position_component_stride;   /**< floats from x to y to z: 1 side by side, else runs of their own */
+    uint32_t velocity_component_stride;   /**< likewise */
+    uint32_t inverse_mass_stride;         /**< floats from one to the next, >= 1 */
+    int32_t positions_only;               /**< not 0: no velocities; positions are the end of the step, in and out */
+    int32_t regularization_per_triangle;  /**< not 0: a regularization buffer is given with every call */
+    uint32_t warm_start_sub_steps;        /**< sub-steps whose pressures the next call's solves start from */
+    int32_t solver;                       /**< apsl_solver */
+    uint32_t bound_interval;              /**< by Chebyshev, >= 1: sub-steps from one bound of the matrix to the next */
+    int32_t limits_stretch;               /**< not 0: principal stretches are limited too; rest shapes are given */
+    int32_t stretch_ceiling_per_triangle; /**< not 0: a stretch_ceilings buffer is given with every call */
+    uint32_t reserved[4];                 /**< zeros; room for fields to come, so that the size stays */
 } apsl_options;
 
 /** apsl::Parameters: what may change from call to call. Begin with apsl_default_parameters(). */
@@ -123,7 +126,8 @@ typedef struct apsl_parameters {
     float first_regularization; /**< 0: alpha is the same in every sub-step; else > 1, that of the first */
     int32_t stepping;           /**< apsl_stepping */
     int32_t enabled;            /**< 0: the cloth is left alone in this call; 1 by default */
-    uint32_t reserved[8];       /**< zeros; room for fields to come, so that the size stays */
+    float stretch_ceiling;      /**< 0, or >= 1.01: the greatest principal stretch, with limits_stretch */
+    uint32_t reserved[7];       /**< zeros; room for fields to come, so that the size stays */
 } apsl_parameters;
 
 /** apsl::BufferView: 32-bit floats in a buffer of the caller's. */
@@ -140,6 +144,9 @@ typedef struct apsl_buffers {
     apsl_buffer_view inverse_masses; /**< 1/kg, [V] with inverse_mass_stride, 0 pins a vertex */
     apsl_buffer_view rest_areas;     /**< m2, [T]; 0 leaves a triangle alone */
     apsl_buffer_view regularization; /**< alpha, [T]; only with regularization_per_triangle, else a null buffer */
+    apsl_buffer_view rest_shapes;    /**< 1/m, 4 floats a triangle, [T]: inverse of the 2x2 matrix of rest edges, row by
+                                        row; zeros: no ceiling there. Only with limits_stretch, else a null buffer */
+    apsl_buffer_view stretch_ceilings; /**< >= 1.01, [T], 0: none; only with stretch_ceiling_per_triangle */
 } apsl_buffers;
 
 /** apsl::Stats: what a call did to one cloth. */
@@ -156,6 +163,12 @@ typedef struct apsl_stats {
     uint32_t offender_index;       /**< the first one, within its cloth */
     uint32_t raised_vertices;      /**< vertices that weighed more than given in the last sub-step */
     float greatest_mass_ratio;     /**< their greatest mass over the one given; 1 where none was raised */
+    float max_stretch;             /**< greatest principal stretch; this and what follows is 0 without limits_stretch */
+    float max_stretch_excess;      /**< greatest max(0, principal stretch - ceiling) of the state that stands */
+    float rms_stretch_excess;      /**< weighted with A0 */
+    float initial_max_stretch_excess; /**< the greatest at x + dt v */
+    float initial_rms_stretch_excess; /**< and the weighted RMS there */
+    uint32_t stretch_rows;            /**< triangles that the ceiling held in the last sub-step */
 } apsl_stats;
 
 /** What went wrong in this thread's last failed call: one line, empty before the first. Valid until the next one. */
@@ -226,6 +239,12 @@ APSL_API apsl_result apsl_limiter_enqueue_rest_areas(apsl_limiter* limiter, cl_c
                                                      const apsl_buffer_view* rest_positions,
                                                      const apsl_buffer_view* rest_areas, cl_uint wait_count,
                                                      const cl_event* wait_list, cl_event* event);
+
+/** Queues apsl_buffers.rest_shapes at rest_positions likewise: 4 floats a triangle. Only with limits_stretch. */
+APSL_API apsl_result apsl_limiter_enqueue_rest_shapes(apsl_limiter* limiter, cl_command_queue queue,
+                                                      const apsl_buffer_view* rest_positions,
+                                                      const apsl_buffer_view* rest_shapes, cl_uint wait_count,
+                                                      const cl_event* wait_list, cl_event* event);
 
 /** Queues a non-blocking read of the last call's statistics, stats_count the number of cloths. stats must live until
  * the event, which must not be null, completes. */

@@ -28,6 +28,7 @@ enum class Solver : std::int32_t {
     /// A fixed Chebyshev polynomial in G, of a degree with the reach that α has (docs/formulation.md): no sums over the
     /// cloth, one launch an iteration, and stable however few of them. Parameters::tolerance is not used.
     chebyshev = 1,
+    automatic = 2,  ///< chebyshev with Options::limits_stretch, conjugate_gradient otherwise
 };
 
 /// How a call is divided over the device.
@@ -71,14 +72,26 @@ struct Options {
     std::uint32_t warm_start_sub_steps = 0;
     /// chebyshev needs the consistent matrix, matrix-free, no warm_start_sub_steps and one α for all triangles, and
     /// with every call Parameters::adaptive_threshold 0.
-    Solver solver = Solver::conjugate_gradient;
+    Solver solver = Solver::automatic;
     /// chebyshev: sub-steps from one bound of the matrix to the next, ≥ 1. 1 is for garments, where a triangle may
     /// become another from one sub-step to the next; where none does, one bound for all sub-steps of a call (as many or
     /// more) is quicker (docs/formulation.md).
     std::uint32_t bound_interval = 1;
+    /// Principal stretches are limited along with the areas (docs/formulation.md, Stretch ceiling):
+    /// Buffers::rest_shapes is given with every call. Needs solver chebyshev and bound_interval 1.
+    bool limits_stretch = false;
+    /// Each triangle has its own ceiling, Buffers::stretch_ceilings, in place of Parameters::stretch_ceiling. Needs
+    /// limits_stretch.
+    bool stretch_ceiling_per_triangle = false;
 
     bool operator==(const Options&) const = default;  ///< field by field
 };
+
+/// The solver that `options` mean: automatic is resolved.
+constexpr Solver resolved_solver(const Options& options) {
+    if (options.solver != Solver::automatic) return options.solver;
+    return options.limits_stretch ? Solver::chebyshev : Solver::conjugate_gradient;
+}
 
 APSL_STRUCTS_END
 

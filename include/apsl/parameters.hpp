@@ -11,7 +11,8 @@ namespace apsl {
 
 /// Which positions each sub-step linearises about.
 enum class Stepping : std::int32_t {
-    automatic = 0,   ///< small_steps from 20 sub-steps up, whole_step below
+    /// small_steps from 20 sub-steps up, with Options::limits_stretch from 2; whole_step below
+    automatic = 0,
     whole_step = 1,  ///< Algorithm 1 as printed: every sub-step starts from x̃ + Δt ṽ and what was corrected so far
     /// All sub-steps but the last move on by an equal part of Δt, with velocities that hold the corrections so far, and
     /// correct there; the last only corrects (Macklin et al. 2019, docs/formulation.md). Needs 2 sub-steps, and pays
@@ -40,6 +41,9 @@ struct Parameters {
     /// last, α − 1 changes by the same factor from one sub-step to the next (docs/formulation.md). Needs
     /// regularization > 1; a per-triangle α is that of the last sub-step and is scaled alike.
     float first_regularization = 0.0f;
+    /// With Options::limits_stretch: no principal stretch of a triangle above this multiple of its rest shape, ≥ 1.01.
+    /// 0: areas alone. With areas held, edges end between 1/this and this. Ignored where each triangle has its own.
+    float stretch_ceiling = 0.0f;
     Stepping stepping = Stepping::automatic;  ///< which positions each sub-step linearises about
     /// false: the cloth is left alone, nothing of it is read or written, its statistics are zeros with Status::off, and
     /// what is kept for its next call stays.

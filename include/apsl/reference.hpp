@@ -17,11 +17,13 @@ namespace apsl::reference {
 /// What the filter reads and writes, in the caller's memory.
 template <class Real>
 struct Buffers {
-    std::span<const Real> positions;       ///< m, [3V], x̃: the start of the step, not the predicted end
-    std::span<Real> velocities;            ///< m/s, [3V], ṽ in and out
-    std::span<const Real> inverse_masses;  ///< 1/kg, [V], 0 pins a vertex
-    std::span<const Real> rest_areas;      ///< m², [T], > 0
-    std::span<const Real> regularization;  ///< α ≥ 1, [T], or empty: Parameters::regularization for all
+    std::span<const Real> positions;         ///< m, [3V], x̃: the start of the step, not the predicted end
+    std::span<Real> velocities;              ///< m/s, [3V], ṽ in and out
+    std::span<const Real> inverse_masses;    ///< 1/kg, [V], 0 pins a vertex
+    std::span<const Real> rest_areas;        ///< m², [T], > 0
+    std::span<const Real> regularization;    ///< α ≥ 1, [T], or empty: Parameters::regularization for all
+    std::span<const Real> rest_shapes = {};  ///< 1/m, [4T], with Options::limits_stretch; as apsl::Buffers has them
+    std::span<const Real> stretch_ceilings = {};  ///< [T], 0 or ≥ 1.01, or empty: Parameters::stretch_ceiling for all
 };
 
 /// The filter of Algorithm 1 on the CPU, one thread, plain code: what device results are checked against.
@@ -30,9 +32,9 @@ struct Buffers {
 template <class Real>
 class BasicStrainLimiter {
 public:
-    /// Of the options `matrix`, `solver`, `warm_start_sub_steps` and `bound_interval` count here; the others say how a
-    /// device is used. α is one for each triangle where the buffers have one. Throws Error(invalid_argument) as
-    /// validate() does.
+    /// Of the options `matrix`, `solver`, `warm_start_sub_steps`, `bound_interval` and `limits_stretch` count here; the
+    /// others say how a device is used. α is one for each triangle where the buffers have one. Throws
+    /// Error(invalid_argument) as validate() does.
     explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, const Options& options = {});
     ~BasicStrainLimiter();
     BasicStrainLimiter(BasicStrainLimiter&&) noexcept;  ///< what was moved from may only be assigned to or destroyed
@@ -61,6 +63,10 @@ extern template class BasicStrainLimiter<float>;
 /// Rest areas of the triangles at the given positions: m², [T] from [3V]. Zero for a degenerate triangle.
 template <class Real>
 std::vector<Real> areas(const Topology& topology, std::span<const Real> positions);
+
+/// Buffers::rest_shapes of the triangles at the given positions: 1/m, [4T] from [3V]. Zeros for a degenerate triangle.
+template <class Real>
+std::vector<Real> rest_shapes(const Topology& topology, std::span<const Real> positions);
 
 /// Lumped inverse masses: each vertex carries a third of its triangles' rest area times density (kg/m²). 0 for isolated
 /// vertices. 1/kg, [V].

@@ -11,7 +11,8 @@ namespace apsl {
 enum class Status : std::int32_t {
     ok = 0,             ///< every solve met its tolerance
     not_converged = 1,  ///< at least one solve used all its iterations; the best state reached stands
-    /// The greatest or the RMS area change rose above what it was at x̃ + Δt ṽ. The state with the lower capped RMS
+    /// The greatest or the RMS area change rose above what it was at x̃ + Δt ṽ; with a stretch ceiling the greater of
+    /// area change and excess counts, and the squares of both. The state with the lower capped RMS
     /// stands, in which each triangle counts by its rest area and with at most 100 %. Where that is the first state,
     /// the velocities are as they were given. Where it is the second, `offender` names a triangle that ended worse.
     worsened = 2,
@@ -45,7 +46,14 @@ struct Stats {
     /// them (docs/formulation.md, Effective masses).
     std::uint32_t raised_vertices;
     float greatest_mass_ratio;  ///< their greatest mass over the one given; 1 where none was raised
+    /// Greatest principal stretch of the state that stands; this and what follows is 0 without Options::limits_stretch.
+    float max_stretch;
+    float max_stretch_excess;          ///< greatest max(0, principal stretch − ceiling)
+    float rms_stretch_excess;          ///< root of the mean of its squares, weighted with A⁰
+    float initial_max_stretch_excess;  ///< the greatest at x̃ + Δt ṽ
+    float initial_rms_stretch_excess;  ///< and the weighted RMS there
+    std::uint32_t stretch_rows;        ///< triangles that the ceiling held in the last sub-step
 };
-static_assert(sizeof(Stats) == 48);
+static_assert(sizeof(Stats) == 72);
 
 }  // namespace apsl

@@ -40,6 +40,13 @@ struct Buffers {
     BufferView inverse_masses;       ///< 1/kg, 1 float every Options::inverse_mass_stride, [V], 0 pins a vertex
     BufferView rest_areas;           ///< m², [T]; 0 leaves a triangle alone, less is not legal
     BufferView regularization = {};  ///< α ≥ 1, [T], less counts as 1; only with Options::regularization_per_triangle
+    /// 1/m, 4 floats a triangle, [T]: the inverse M of the 2×2 matrix whose columns are the triangle's rest edges
+    /// x₁ − x₀ and x₂ − x₀ in its plane, row by row. The deformation gradient is F = [x₁ − x₀, x₂ − x₀] M. Zeros: no
+    /// ceiling for this triangle. Only with Options::limits_stretch; see enqueue_rest_shapes.
+    BufferView rest_shapes = {};
+    /// ≥ 1.01, [T], less counts as 1.01; 0: no ceiling for this triangle. Only with
+    /// Options::stretch_ceiling_per_triangle.
+    BufferView stretch_ceilings = {};
 };
 
 APSL_STRUCTS_END
@@ -133,6 +140,11 @@ public:
     /// Queue, event and errors are as those of enqueue.
     [[nodiscard]] cl_event enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions,
                                               const BufferView& rest_areas, std::span<const cl_event> wait_list = {});
+
+    /// Queues Buffers::rest_shapes of all triangles at `rest_positions` likewise: 4 floats a triangle, [T]. Zeros where
+    /// a triangle has no area. Only with Options::limits_stretch.
+    [[nodiscard]] cl_event enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions,
+                                               const BufferView& rest_shapes, std::span<const cl_event> wait_list = {});
 
     /// Queues a non-blocking read of the last call's statistics, one entry for every cloth. `stats` must live until the
     /// returned event completes; the caller releases it. On an out-of-order queue put enqueue's event into wait_list.

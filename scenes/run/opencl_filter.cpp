@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "run/opencl_filter.hpp"
 
+#include "run/rest_shapes.hpp"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -70,6 +72,9 @@ OpenClFilter::OpenClFilter(const OpenClDevice& device, const ClothState& cloth, 
     inverse_masses_ = make_buffer(to_float(cloth.inverse_masses), "inverse masses");
     rest_areas_ = make_buffer(to_float(cloth.rest_areas), "rest areas");
     if (!settings.regularization.empty()) regularization_ = make_buffer(settings.regularization, "regularization");
+    if (settings.options.limits_stretch) rest_shapes_ = make_buffer(to_float(rest_shapes(cloth)), "rest shapes");
+    if (!settings.stretch_ceilings.empty())
+        stretch_ceilings_ = make_buffer(settings.stretch_ceilings, "stretch ceilings");
     limiter_.set_profiling(profile);
 }
 
@@ -103,7 +108,9 @@ Stats OpenClFilter::filter(ClothState& cloth) {
                           .velocities = {velocities_.get()},
                           .inverse_masses = {inverse_masses_.get()},
                           .rest_areas = {rest_areas_.get()},
-                          .regularization = {regularization_.get()}};
+                          .regularization = {regularization_.get()},
+                          .rest_shapes = {rest_shapes_.get()},
+                          .stretch_ceilings = {stretch_ceilings_.get()}};
     const host::EventHandle filtered(limiter_.enqueue(queue_.get(), buffers, parameters_));
     const host::EventHandle read(limiter_.read_stats(queue_.get(), {&stats_, 1}));
     // The queue is in order: this read waits for all of the above.

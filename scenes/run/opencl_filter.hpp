@@ -45,6 +45,8 @@ private:
     host::BufferHandle inverse_masses_;
     host::BufferHandle rest_areas_;
     host::BufferHandle regularization_;
+    host::BufferHandle rest_shapes_;
+    host::BufferHandle stretch_ceilings_;
     std::vector<float> uploaded_positions_;   // [3V]
     std::vector<float> uploaded_velocities_;  // [3V]
     std::vector<float> filtered_velocities_;  // [3V]

@@ -152,27 +152,44 @@ void parse_field(SceneObject& object, const Field<Struct, Value>& field, Struct&
     }
 }
 
-// One for all triangles, or one for each.
-void parse_regularization(SceneObject& object, StrainLimiting& settings) {
-    const SceneValue given = object.find("regularization");
+// One for all triangles into `uniform`, or one for each, which are returned.
+std::vector<float> parse_triangle_values(SceneObject& object, const Field<Parameters, float>& field,
+                                         Parameters& uniform) {
+    const SceneValue given = object.find(field.name);
     if (given.json == nullptr || !given.json->is_array()) {
-        float& regularization = settings.parameters.regularization;
-        regularization = static_cast<float>(object.number("regularization", regularization, range_of(at_least_one)));
-        return;
+        parse_field(object, field, uniform);
+        return {};
     }
     if (given.json->empty()) given.expected("a number, or one for each triangle");
-    for (const SceneValue& entry : given.entries())
-        settings.regularization.push_back(static_cast<float>(entry.number(range_of(at_least_one))));
-    settings.options.regularization_per_triangle = true;
+    std::vector<float> values;
+    for (const SceneValue& entry : given.entries()) {
+        values.push_back(static_cast<float>(entry.number(range_of(field.bounds))));
+        if (!field.bounds.hold(values.back())) entry.expected("0 or a number ≥ 1.01");
+    }
+    return values;
+}
+
+// The keys that may hold one number a triangle.
+bool is_triangle_value(std::string_view name) {
+    return name == "regularization" || name == "stretch_ceiling";
 }
 
 StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     StrainLimiting settings;
     for_each_field(option_fields, [&](const auto& field) { parse_field(object, field, settings.options); });
-    parse_regularization(object, settings);
     for_each_field(parameter_fields, [&](const auto& field) {
-        if (field.name != std::string_view("regularization")) parse_field(object, field, settings.parameters);
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>) {
+            if (field.name == std::string_view("regularization"))
+                settings.regularization = parse_triangle_values(object, field, settings.parameters);
+            else if (field.name == std::string_view("stretch_ceiling"))
+                settings.stretch_ceilings = parse_triangle_values(object, field, settings.parameters);
+        }
+        if (!is_triangle_value(field.name)) parse_field(object, field, settings.parameters);
     });
+    settings.options.regularization_per_triangle = !settings.regularization.empty();
+    settings.options.stretch_ceiling_per_triangle = !settings.stretch_ceilings.empty();
+    settings.options.limits_stretch =
+        settings.parameters.stretch_ceiling > 0.0f || settings.options.stretch_ceiling_per_triangle;
     settings.parameters.time_step = static_cast<float>(time_step);
     object.refuse_other_keys();
     try {

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "run/reference_filter.hpp"
 
+#include "run/rest_shapes.hpp"
+
 namespace apsl::scenes {
 
 ReferenceFilter::ReferenceFilter(const ClothState& cloth, const StrainLimiting& settings)
     : parameters_(settings.parameters),
       regularization_(settings.regularization.begin(), settings.regularization.end()),
+      stretch_ceilings_(settings.stretch_ceilings.begin(), settings.stretch_ceilings.end()),
       limiter_(cloth.topology, settings.options) {
+    if (settings.options.limits_stretch) rest_shapes_ = rest_shapes(cloth);
 }
 
 Stats ReferenceFilter::filter(ClothState& cloth) {
@@ -14,7 +18,9 @@ Stats ReferenceFilter::filter(ClothState& cloth) {
                       .velocities = cloth.velocities,
                       .inverse_masses = cloth.inverse_masses,
                       .rest_areas = cloth.rest_areas,
-                      .regularization = regularization_},
+                      .regularization = regularization_,
+                      .rest_shapes = rest_shapes_,
+                      .stretch_ceilings = stretch_ceilings_},
                      parameters_);
     return limiter_.read_stats();
 }

@@ -25,7 +25,9 @@ public:
 
 private:
     Parameters parameters_;
-    std::vector<double> regularization_;  // [T] or empty
+    std::vector<double> regularization_;    // [T] or empty
+    std::vector<double> rest_shapes_;       // [4T] or empty
+    std::vector<double> stretch_ceilings_;  // [T] or empty
     reference::StrainLimiter limiter_;
 };
 

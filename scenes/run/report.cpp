@@ -23,6 +23,8 @@ template <class Report>
 void add_filter_notes(const Report& report, nlohmann::ordered_json& json) {
     json["raised_vertices"] = report.raised_vertices;
     json["greatest_mass_ratio"] = report.greatest_mass_ratio;
+    json["max_stretch_excess"] = report.max_stretch_excess;
+    json["stretch_rows"] = report.stretch_rows;
     if (!report.worsened) return;
     json["worsened"] = {{"frame", report.worsened->frame},
                         {"step", report.worsened->step},
@@ -110,6 +112,8 @@ RunSummary summarize(const std::vector<FrameReport>& frames) {
         summary.status = std::max(summary.status, frame.status);
         summary.raised_vertices = std::max(summary.raised_vertices, frame.raised_vertices);
         summary.greatest_mass_ratio = std::max(summary.greatest_mass_ratio, frame.greatest_mass_ratio);
+        summary.max_stretch_excess = std::max(summary.max_stretch_excess, frame.max_stretch_excess);
+        summary.stretch_rows = std::max(summary.stretch_rows, frame.stretch_rows);
         if (frame.worsened && (!summary.worsened || frame.worsened->area_change > summary.worsened->area_change))
             summary.worsened = frame.worsened;
     }

@@ -50,6 +50,8 @@ struct FrameReport {
     std::uint32_t raised_vertices = 0;         ///< that weighed more than given, because the tension needs it
     double greatest_mass_ratio = 1.0;          ///< their greatest mass over the one given
     std::optional<WorsenedTriangle> worsened;  ///< the one that came to the greatest area change
+    double max_stretch_excess = 0.0;           ///< over the stretch ceiling, after the filter
+    std::uint32_t stretch_rows = 0;            ///< triangles that the ceiling held in the last sub-step
 };
 
 /// Where a simulation broke down.
@@ -87,6 +89,7 @@ struct RunReport {
     Pieces pieces;
     LightVertices light;
     CapTriangles caps;
+    bool limits_stretch = false;      ///< then masses are raised as a matter of course
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step
     std::size_t device_bytes = 0;
     Energy start_energy;  ///< before the first step
@@ -115,6 +118,8 @@ struct RunSummary {
     std::uint32_t raised_vertices = 0;
     double greatest_mass_ratio = 1.0;
     std::optional<WorsenedTriangle> worsened;
+    double max_stretch_excess = 0.0;
+    std::uint32_t stretch_rows = 0;
 };
 
 RunSummary summarize(const std::vector<FrameReport>& frames);

@@ -124,6 +124,7 @@ int run_command(const RunOptions& options) {
     report.pieces = pieces;
     report.light = light;
     report.caps = caps;
+    report.limits_stretch = scene.strain_limiting && scene.strain_limiting->options.limits_stretch;
     const bool complete = simulate(simulation, scene.frames, output, report);
     if (!complete && !report.breakdown) {
         std::fprintf(stderr, "interrupted after %zu of %d frames; no report is written\n", report.frames.size(),

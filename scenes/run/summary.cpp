@@ -49,7 +49,11 @@ std::string summary_text(const RunReport& report) {
     text += format("  RMS area change        %.3f %%\n", 100.0 * summary.rms_area_change);
     text += format("  edges                  %.2f to %.2f of their rest length\n", summary.min_edge_stretch,
                    summary.max_edge_stretch);
-    text += format("  principal stretch      %.2f at most\n", summary.max_principal_stretch);
+    text += format("  principal stretch      %.3f at most", summary.max_principal_stretch);
+    if (report.limits_stretch)
+        text += format(", %.3f over its ceiling, which held up to %u of %zu triangles", summary.max_stretch_excess,
+                       summary.stretch_rows, report.triangles);
+    text += "\n";
     if (report.over_stretch.count > 0) {
         const auto& [worst, why] = report.over_stretch.entries.front();
         text += format(
@@ -58,7 +62,7 @@ std::string summary_text(const RunReport& report) {
             report.over_stretch.count, over_stretch_ratio, worst.triangle, worst.edge_stretch,
             100.0 * worst.area_change, why.c_str());
     }
-    if (summary.raised_vertices > 0) {
+    if (summary.raised_vertices > 0 && !report.limits_stretch) {
         text += format(
             "  light vertices         %u of %zu too light for the tension at their triangles (lightest: %s); the "
             "filter "

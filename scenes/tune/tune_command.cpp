@@ -32,7 +32,8 @@ public:
     }
 
     void add(const Trial& trial, const TuningGoal& goal) {
-        const auto& [options, parameters, each] = trial.settings.limiting;
+        const Options& options = trial.settings.limiting.options;
+        const Parameters& parameters = trial.settings.limiting.parameters;
         const float last = parameters.regularization;
         const bool has_tolerance = options.solver == Solver::conjugate_gradient;
         std::fprintf(stream_, "%5d  %-18s  %9d  %-11s  %7.4g  %6.4g  %9s  %10d  %6d  %9.3f %%  %10.3f  %8.3f  %s\n",

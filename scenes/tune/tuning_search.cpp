@@ -39,7 +39,8 @@ constexpr std::size_t max_confirmations = 6;
 struct Interrupted {};
 
 void set_sub_steps(LimiterSettings& settings, int sub_steps) {
-    auto& [options, parameters, each] = settings.limiting;
+    Options& options = settings.limiting.options;
+    Parameters& parameters = settings.limiting.parameters;
     parameters.sub_steps = sub_steps;
     // Small steps gain little from them.
     const bool pays = parameters.first_regularization > 0.0f && parameters.stepping != small_steps;
@@ -56,12 +57,18 @@ bool are_legal(const LimiterSettings& settings) {
     return true;
 }
 
+// What a scheme's solver is compared with.
+LimiterSettings with_resolved_solver(LimiterSettings settings) {
+    settings.limiting.options.solver = resolved_solver(settings.limiting.options);
+    return settings;
+}
+
 class Search {
 public:
     Search(const TuningGoal& goal, const LimiterSettings& given, const TuningFreedom& freedom, int frames,
            const TrialRun& run)
         : goal_(goal),
-          given_(given),
+          given_(with_resolved_solver(given)),
           freedom_(freedom),
           frames_(frames),
           search_frames_(std::min(frames, std::max(30, frames / 4))),

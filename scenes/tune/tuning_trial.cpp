@@ -47,6 +47,7 @@ LimiterSettings limiter_settings(const Scene& scene) {
     LimiterSettings settings{.steps_per_frame = scene.steps_per_frame,
                              .limiting = scene.strain_limiting.value_or(StrainLimiting{})};
     settings.limiting.parameters.time_step = Parameters{}.time_step;
+    settings.limiting.options.solver = resolved_solver(settings.limiting.options);
     return settings;
 }
 

@@ -2,6 +2,7 @@
 #include "finite.hpp"
 #include "reference/check.hpp"
 #include "reference/geometry.hpp"
+#include "reference/stretch_rows.hpp"
 
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
@@ -14,6 +15,18 @@ std::vector<Real> areas(const Topology& topology, std::span<const Real> position
     std::vector<Real> result(topology.triangle_count());
     for (std::size_t a = 0; a < result.size(); ++a)
         result[a] = triangle_geometry(topology.triangles()[a], positions).area;
+    return result;
+}
+
+template <class Real>
+std::vector<Real> rest_shapes(const Topology& topology, std::span<const Real> positions) {
+    check_size("positions", positions.size(), 3 * topology.vertex_count());
+    std::vector<Real> result;
+    result.reserve(4 * topology.triangle_count());
+    for (const Triangle& triangle : topology.triangles()) {
+        const RestShape<Real> shape = rest_shape(triangle, positions);
+        result.insert(result.end(), {shape[1][0], shape[1][1], shape[2][0], shape[2][1]});
+    }
     return result;
 }
 
@@ -36,6 +49,8 @@ std::vector<Real> inverse_masses(const Topology& topology, std::span<const Real>
 
 template std::vector<double> areas(const Topology&, std::span<const double>);
 template std::vector<float> areas(const Topology&, std::span<const float>);
+template std::vector<double> rest_shapes(const Topology&, std::span<const double>);
+template std::vector<float> rest_shapes(const Topology&, std::span<const float>);
 template std::vector<double> inverse_masses(const Topology&, std::span<const double>, double);
 template std::vector<float> inverse_masses(const Topology&, std::span<const float>, float);
 

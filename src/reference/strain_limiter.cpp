@@ -12,8 +12,10 @@
 #include "reference/effective_masses.hpp"
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
+#include "reference/stretch_limiting.hpp"
 
 #include "chebyshev_products.hpp"
+#include "fields.hpp"
 #include "resolved_parameters.hpp"
 #include "scheduled_regularization.hpp"
 #include "stepping.hpp"
@@ -29,7 +31,7 @@ namespace apsl::reference {
 namespace {
 
 template <class Real>
-void check(const Topology& topology, const Buffers<Real>& buffers) {
+void check(const Topology& topology, const Buffers<Real>& buffers, const Options& options) {
     check_size("positions", buffers.positions.size(), 3 * topology.vertex_count());
     check_size("velocities", buffers.velocities.size(), 3 * topology.vertex_count());
     check_size("inverse_masses", buffers.inverse_masses.size(), topology.vertex_count());
@@ -42,6 +44,12 @@ void check(const Topology& topology, const Buffers<Real>& buffers) {
                  [](Real area) { return area >= Real(0); });
     check_values("regularization", "triangle", buffers.regularization, "a finite number >= 1",
                  [](Real alpha) { return alpha >= Real(1); });
+    check_size("rest_shapes", buffers.rest_shapes.size(), options.limits_stretch ? 4 * topology.triangle_count() : 0);
+    check_size("stretch_ceilings", buffers.stretch_ceilings.size(),
+               options.stretch_ceiling_per_triangle ? topology.triangle_count() : 0);
+    check_values("rest_shapes", "number", buffers.rest_shapes, "a finite number (1/m)", [](Real) { return true; });
+    check_values("stretch_ceilings", "triangle", buffers.stretch_ceilings, "0 or a finite number >= 1.01",
+                 [](Real ceiling) { return ceiling == Real(0) || ceiling >= Real(least_stretch_ceiling); });
 }
 
 template <class Real>
@@ -89,6 +97,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     std::vector<Real> direction_bounds;  // s, [V]
     TriangleVector<Real> bound;          // B with its margin, [T]
     ChebyshevScratch<Real> chebyshev_scratch;
+    StretchLimiting<Real> stretches;  ///< with Options::limits_stretch
     Stats stats{};
 
     void predict(const Buffers<Real>& buffers, Real time_step) {
@@ -108,18 +117,38 @@ struct BasicStrainLimiter<Real>::Implementation {
         return area_change<Real>(geometry, buffers.rest_areas);
     }
 
+    /// The areas and, with a ceiling, the stretches of a state.
+    struct Standing {
+        AreaChange areas;
+        StretchExcess stretches;
+
+        bool finite() const { return areas.finite && stretches.finite; }
+        /// What is judged: the greater of area change and excess, and the squares of both.
+        double max() const { return std::max(areas.max, stretches.max); }
+        double rms() const { return std::hypot(areas.rms, stretches.rms); }
+        double capped_rms() const { return std::hypot(areas.capped_rms, stretches.capped_rms); }
+    };
+
+    /// At x_j.
+    Standing standing(const Buffers<Real>& buffers) {
+        Standing state{measure(buffers), {}};
+        if (options.limits_stretch) state.stretches = stretches.measure(moved);
+        return state;
+    }
+
     /// What the areas are off by at the start of the step, and the first of its `parts` parts.
-    AreaChange start_small_steps(const Buffers<Real>& buffers, Real time_step, int parts) {
+    Standing start_small_steps(const Buffers<Real>& buffers, Real time_step, int parts) {
         std::copy(buffers.positions.begin(), buffers.positions.end(), moved.begin());
-        const AreaChange at_start = measure(buffers);
-        if (!at_start.finite) return at_start;
+        const Standing at_start = standing(buffers);
+        if (!at_start.finite()) return at_start;
         start_error = area_errors(buffers);
+        if (options.limits_stretch) stretches.keep_start_excess(moved);
         motion.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) {
             motion[n] = time_step * buffers.velocities[n];
             moved[n] = buffers.positions[n] + motion[n] / static_cast<Real>(parts);
         }
-        return measure(buffers);
+        return standing(buffers);
     }
 
     /// A − A⁰ at the present geometry; 0 where there is no rest area.
@@ -135,7 +164,8 @@ struct BasicStrainLimiter<Real>::Implementation {
     void find_excess(const Buffers<Real>& buffers, int parts) {
         area_excess = area_errors(buffers);
         if (parts == 0) return;
-        area_excess -= static_cast<Real>(start_error_left(stats.sub_steps, parts)) * start_error;
+        area_excess -=
+            static_cast<Real>(start_error_left(stats.sub_steps, parts, options.limits_stretch)) * start_error;
         for (std::size_t a = 0; a < geometry.size(); ++a)
             area_excess[a] = std::max(area_excess[a], Real(1 - greatest_growth) * geometry[a].area);
     }
@@ -147,6 +177,26 @@ struct BasicStrainLimiter<Real>::Implementation {
             if (masses.inverse[i] < inverse_masses[i]) direction_bounds[i] *= static_cast<Real>(raised_margin);
     }
 
+    int products(const ResolvedParameters& parameters) const {
+        const double alpha =
+            scheduled_regularization(static_cast<double>(parameters.regularization), parameters, stats.sub_steps);
+        return chebyshev_products(alpha, parameters.max_iterations, options.limits_stretch);
+    }
+
+    /// What a polynomial of `count` products left.
+    static SolveResult<Real> polynomial_result(int count, bool finite) {
+        return {count, finite ? Real(0) : std::numeric_limits<Real>::quiet_NaN(), true};
+    }
+
+    /// Both rows of every triangle.
+    SolveResult<Real> solve_with_stretches(const ResolvedParameters& parameters) {
+        const int parts = parameters.small_steps;
+        const StretchSolve how{parts > 0 ? double{start_error_left(stats.sub_steps, parts, true)} : 0.0,
+                               products(parameters)};
+        stretches.solve(moved, geometry, area_excess, how);
+        return polynomial_result(how.products, stretches.finite());
+    }
+
     /// A Chebyshev polynomial in place of a solve, of the degree that belongs to α; λ is left in `lambda`.
     SolveResult<Real> solve_by_chebyshev(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
@@ -155,17 +205,15 @@ struct BasicStrainLimiter<Real>::Implementation {
         diagonal_bound(*topology, triangles, std::span<const Real>(masses.inverse),
                        std::span<const Real>(direction_bounds), bound);
         bound *= static_cast<Real>(bound_margin);
-        const double alpha =
-            scheduled_regularization(static_cast<double>(parameters.regularization), parameters, stats.sub_steps);
-        const int products = chebyshev_products(alpha, parameters.max_iterations);
-        chebyshev(G, bound, area_excess, products, chebyshev_scratch, lambda);
-        const bool finite = lambda.allFinite();
-        return {products, finite ? Real(0) : std::numeric_limits<Real>::quiet_NaN(), true};
+        const int count = products(parameters);
+        chebyshev(G, bound, area_excess, count, chebyshev_scratch, lambda);
+        return polynomial_result(count, lambda.allFinite());
     }
 
     /// One solve of (G + (α − 1) diag G) λ = b at the present geometry; λ is left in `lambda`.
     SolveResult<Real> solve(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
         find_excess(buffers, parameters.small_steps);
+        if (options.limits_stretch) return solve_with_stretches(parameters);
         if (options.solver == Solver::chebyshev) return solve_by_chebyshev(buffers.inverse_masses, parameters);
         const std::span<const TriangleGeometry<Real>> triangles = geometry;
         const std::span<const Real> inverse_masses = masses.inverse;
@@ -198,20 +246,27 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// What sub-step stats.sub_steps leaves to the next.
     void prepare_next(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
         if (stats.sub_steps + 1 < parameters.sub_steps && parameters.raises_masses)
-            masses.raise(buffers.inverse_masses);
+            options.limits_stretch ? stretches.raise_masses() : masses.raise(buffers.inverse_masses);
+    }
+
+    /// The displacements that the pressures make.
+    void find_correction(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
+        const std::span<const Real> pressures{lambda.data(), geometry.size()};
+        displacements<Real>(*topology, geometry, masses.inverse, pressures, correction);
+        if (!parameters.raises_masses) return;
+        masses.find_tension(*topology, geometry, pressures);
+        for (std::size_t n = 0; n < correction.size(); ++n)
+            correction[n] *= masses.share_taken(n / 3, inverse_masses[n / 3]);
     }
 
     /// Corrects x_j. In small steps of `parts` parts a displacement of sub-step k changes the velocity too, by parts ·
     /// Δx / Δt, and carries on through the parts left.
     void displace(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
         const int sub_step = stats.sub_steps, parts = parameters.small_steps;
-        const std::span<const Real> pressures{lambda.data(), geometry.size()};
-        displacements<Real>(*topology, geometry, masses.inverse, pressures, correction);
-        if (parameters.raises_masses) {
-            masses.find_tension(*topology, geometry, pressures);
-            for (std::size_t n = 0; n < correction.size(); ++n)
-                correction[n] *= masses.share_taken(n / 3, inverse_masses[n / 3]);
-        }
+        if (options.limits_stretch)
+            stretches.displacements(parameters.raises_masses, correction);
+        else
+            find_correction(inverse_masses, parameters);
         const auto carried = static_cast<Real>(std::max(parts - sub_step, 1));
         for (std::size_t n = 0; n < moved.size(); ++n) {
             moved[n] += correction[n];
@@ -244,30 +299,34 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// The first triangle whose area is not finite or has no place in 32-bit statistics.
     void name_triangle(const Buffers<Real>& buffers) {
         for (std::size_t a = 0; a < geometry.size(); ++a)
-            if (!area_change<Real>(std::span(geometry).subspan(a, 1), buffers.rest_areas.subspan(a, 1)).finite)
+            if (!area_change<Real>(std::span(geometry).subspan(a, 1), buffers.rest_areas.subspan(a, 1)).finite ||
+                (options.limits_stretch && !is_finite(stretches.excess(a, moved))))
                 return name_offender(Offender::triangle, a);
     }
 
-    /// True where the result of the call is dropped: greatest and RMS area change are then those at x̃ + Δt ṽ. The
-    /// capped RMS decides, so that a single triangle does not cost the others their correction. Where the result stands
-    /// and the greatest rose, the triangle that has it is named.
-    bool is_worse(const AreaChange& initial, const AreaChange& change, std::span<const Real> rest_areas) {
+    /// True where the result of the call is dropped: greatest and RMS are then those at x̃ + Δt ṽ. The capped RMS
+    /// decides, so that a single triangle does not cost the others their correction. Where the result stands and the
+    /// greatest rose, the triangle that has it is named.
+    bool is_worse(const Standing& initial, const Standing& change, std::span<const Real> rest_areas) {
         const bool rose =
-            change.max > initial.max || change.rms > initial.rms || change.capped_rms > initial.capped_rms;
-        const bool at_rest = initial.max <= static_cast<Real>(APSLK_AT_REST);
-        const bool worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
-        set_area_change(worse ? initial : change);
+            change.max() > initial.max() || change.rms() > initial.rms() || change.capped_rms() > initial.capped_rms();
+        const bool at_rest = initial.max() <= static_cast<double>(APSLK_AT_REST);
+        bool worse = rose && (at_rest || change.capped_rms() >= initial.capped_rms());
+        // Where tension goes unstable all of a cloth explodes, and the cap would hide it.
+        if (options.limits_stretch) worse = worse || change.rms() > initial.rms();
+        set_standing(worse ? initial : change);
         if (rose && !at_rest) stats.status = Status::worsened;
-        if (!worse && change.max > initial.max) name_offender(Offender::triangle, worst_triangle(rest_areas));
+        if (!worse && change.max() > initial.max()) name_offender(Offender::triangle, worst_triangle(rest_areas));
         return worse;
     }
 
-    /// The first triangle with the greatest area change.
+    /// The first triangle with the greatest area change or, with a ceiling, excess.
     std::size_t worst_triangle(std::span<const Real> rest_areas) const {
         std::size_t worst = 0;
         double greatest = -1.0;
         for (std::size_t a = 0; a < geometry.size(); ++a) {
-            const double change = area_change<Real>(std::span(geometry).subspan(a, 1), rest_areas.subspan(a, 1)).max;
+            double change = area_change<Real>(std::span(geometry).subspan(a, 1), rest_areas.subspan(a, 1)).max;
+            if (options.limits_stretch) change = std::max(change, static_cast<double>(stretches.excess(a, moved)));
             if (change > greatest) {
                 greatest = change;
                 worst = a;
@@ -278,17 +337,22 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     /// Vertices that weighed more than given in the last sub-step.
     void count_raised(std::span<const Real> inverse_masses) {
+        const std::span<const Real> effective =
+            options.limits_stretch ? stretches.inverse_masses() : std::span<const Real>(masses.inverse);
         for (std::size_t i = 0; i < inverse_masses.size(); ++i) {
-            if (!(masses.inverse[i] < inverse_masses[i])) continue;
+            if (!(effective[i] < inverse_masses[i])) continue;
             ++stats.raised_vertices;
             stats.greatest_mass_ratio =
-                std::max(stats.greatest_mass_ratio, static_cast<float>(inverse_masses[i] / masses.inverse[i]));
+                std::max(stats.greatest_mass_ratio, static_cast<float>(inverse_masses[i] / effective[i]));
         }
     }
 
-    void set_area_change(const AreaChange& change) {
-        stats.max_area_change = static_cast<float>(change.max);
-        stats.rms_area_change = static_cast<float>(change.rms);
+    void set_standing(const Standing& state) {
+        stats.max_area_change = static_cast<float>(state.areas.max);
+        stats.rms_area_change = static_cast<float>(state.areas.rms);
+        stats.max_stretch = static_cast<float>(state.stretches.greatest_stretch);
+        stats.max_stretch_excess = static_cast<float>(state.stretches.max);
+        stats.rms_stretch_excess = static_cast<float>(state.stretches.rms);
     }
 
     /// Leaves the outcome in `stats`; what is not finite ends it as diverged, with the area change of the velocities as
@@ -301,23 +365,26 @@ struct BasicStrainLimiter<Real>::Implementation {
         stats.greatest_mass_ratio = 1.0f;
         predict(buffers, time_step);
         if (!all_finite<Real>(predicted)) return name_offender(Offender::vertex, first_bad_vertex<Real>(predicted));
-        const AreaChange initial = measure(buffers);
-        if (!initial.finite) return name_triangle(buffers);
-        set_area_change(initial);
+        if (options.limits_stretch) stretches.start(*topology, buffers, static_cast<Real>(parameters.stretch_ceiling));
+        const Standing initial = standing(buffers);
+        if (!initial.finite()) return name_triangle(buffers);
+        set_standing(initial);
         stats.initial_max_area_change = stats.max_area_change;
         stats.initial_rms_area_change = stats.rms_area_change;
+        stats.initial_max_stretch_excess = stats.max_stretch_excess;
+        stats.initial_rms_stretch_excess = stats.rms_stretch_excess;
 
-        AreaChange change = initial;
+        Standing change = initial;
         bool all_converged = true;
         const auto target = static_cast<double>(parameters.target_area_change);
         masses.start(buffers.inverse_masses);
-        if (parts > 0 && initial.max > target) change = start_small_steps(buffers, time_step, parts);
+        if (parts > 0 && initial.max() > target) change = start_small_steps(buffers, time_step, parts);
         for (;;) {
-            if (!change.finite) return name_triangle(buffers);
+            if (!change.finite()) return name_triangle(buffers);
             if (stats.sub_steps == parameters.sub_steps) break;
             // On the way the areas are not those of the end of the step.
-            const bool at_the_end = stats.sub_steps >= parts || initial.max <= target;
-            if (at_the_end && change.max <= target) break;
+            const bool at_the_end = stats.sub_steps >= parts || initial.max() <= target;
+            if (at_the_end && change.max() <= target) break;
 
             const SolveResult<Real> result = solve(buffers, parameters);
             if (!is_finite(result.relative_residual)) return;
@@ -328,13 +395,14 @@ struct BasicStrainLimiter<Real>::Implementation {
             stats.residual = std::max(stats.residual, static_cast<float>(result.relative_residual));
             all_converged = all_converged && result.converged;
             adaptive_factor = adapted_factor(adaptive_factor, parameters, result.iterations, result.converged);
-            change = measure(buffers);
+            change = standing(buffers);
         }
         // Without a sub-step there is nothing to add, not even a zero: −0 + 0 would lose its sign.
         const bool any = stats.sub_steps > 0;
         if (any && !filtered_velocities(buffers, time_step)) return;
         stats.status = all_converged ? Status::ok : Status::not_converged;
         count_raised(buffers.inverse_masses);
+        if (options.limits_stretch) stats.stretch_rows = stretches.rows_at_work();
         if (!is_worse(initial, change, buffers.rest_areas) && any)
             std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
     }
@@ -347,6 +415,7 @@ BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> top
     validate(options);
     CsrPattern pattern = topology->csr_pattern(options.matrix);
     implementation_->options = options;
+    implementation_->options.solver = resolved_solver(options);
     implementation_->bound_interval = static_cast<int>(std::min(options.bound_interval, 1u << 30));
     implementation_->topology = std::move(topology);
     implementation_->kept.assign(
@@ -376,7 +445,7 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
            bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) +
            bytes(i.scratch.product) + bytes(i.direction_bounds) + bytes(i.bound) +
            bytes(i.chebyshev_scratch.inverse_bound) + bytes(i.chebyshev_scratch.residual) +
-           bytes(i.chebyshev_scratch.step) + bytes(i.chebyshev_scratch.product);
+           bytes(i.chebyshev_scratch.step) + bytes(i.chebyshev_scratch.product) + i.stretches.bytes();
 }
 
 template <class Real>
@@ -385,13 +454,13 @@ void BasicStrainLimiter<Real>::enqueue(const Buffers<Real>& buffers, const Param
     options.positions_only = false;
     options.regularization_per_triangle = !buffers.regularization.empty();
     validate(options, parameters);
-    check(*implementation_->topology, buffers);
+    check(*implementation_->topology, buffers, options);
     if (!parameters.enabled) {
         implementation_->stats = {};
         implementation_->stats.status = Status::off;
         return;
     }
-    implementation_->filter(buffers, parameters);
+    implementation_->filter(buffers, ResolvedParameters(parameters, options));
 }
 
 template <class Real>

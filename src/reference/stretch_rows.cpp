@@ -140,13 +140,16 @@ TriangleVector<Real> row_bound(const RowSystem<Real>& system, std::span<const Re
     };
     for (Eigen::Index r = 0; r < system.J.rows(); ++r)
         each_vertex_of(r, [&](std::size_t i, const Vector3<Real>& gradient) {
-            around[i] += inverse_masses[i] * gradient * gradient.transpose();
+            const Vector3<Real> direction = gradient.stableNormalized();
+            around[i] += direction * direction.transpose();
         });
     std::vector<Real> greatest(around.size());
     std::transform(around.begin(), around.end(), greatest.begin(), greatest_eigenvalue<Real>);
     TriangleVector<Real> bound = TriangleVector<Real>::Zero(system.J.rows());
     for (Eigen::Index r = 0; r < system.J.rows(); ++r)
-        each_vertex_of(r, [&](std::size_t i, const Vector3<Real>&) { bound[r] += greatest[i]; });
+        each_vertex_of(r, [&](std::size_t i, const Vector3<Real>& gradient) {
+            bound[r] += greatest[i] * inverse_masses[i] * gradient.squaredNorm();
+        });
     return bound;
 }
 

@@ -82,7 +82,8 @@ template <class Real>
 SparseMatrix<Real> row_matrix(const RowSystem<Real>& system, std::span<const Real> inverse_masses);
 
 /// B, [R], with J W Jᵀ ≼ diag(B): J W Jᵀ is a sum over vertices of w_i J_i J_iᵀ, J_i the columns of vertex i, so B_r is
-/// the sum over the row's corners of the greatest eigenvalue of w_i J_iᵀ J_i (as in vertex_bounds).
+/// the sum over the row's corners of w_i |g|², g its gradient there, times the greatest eigenvalue of Σ ĝ ĝᵀ, ĝ =
+/// g/|g|, over the rows at the corner (as in vertex_bounds).
 template <class Real>
 TriangleVector<Real> row_bound(const RowSystem<Real>& system, std::span<const Real> inverse_masses);
 

@@ -18,9 +18,10 @@ AXES = [
     [{"APSLK_POSITION_STRIDE": stride, "APSLK_VELOCITY_STRIDE": stride, "APSLK_POSITION_COMPONENT_STRIDE": component,
       "APSLK_VELOCITY_COMPONENT_STRIDE": component, "APSLK_INVERSE_MASS_STRIDE": mass, "APSLK_POSITIONS_ONLY": positions}
      for stride, component, mass, positions in [(3, 1, 1, 0), (4, 1, 4, 0), (1, 65536, 1, 0), (4, 1, 4, 1)]],
-    # A Chebyshev solve takes one α for all.
-    [{"APSLK_REGULARIZATION_PER_TRIANGLE": alpha, "APSLK_CHEBYSHEV": chebyshev}
-     for alpha, chebyshev in [(0, 0), (1, 0), (0, 1)]],
+    # A Chebyshev solve takes one α for all, and a stretch ceiling a Chebyshev solve.
+    [{"APSLK_REGULARIZATION_PER_TRIANGLE": alpha, "APSLK_CHEBYSHEV": chebyshev, "APSLK_LIMITS_STRETCH": stretch}
+     for alpha, chebyshev, stretch in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 1, 1)]],
+    [{"APSLK_STRETCH_CEILING_PER_TRIANGLE": 0}, {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}],
     [{"APSLK_WARM_START_SUB_STEPS": 0}, {"APSLK_WARM_START_SUB_STEPS": 8}],
     # What the patches of 512 triangles of most meshes have; host/ passes the number of the meshes at hand.
     [{"APSLK_PATCH_VERTICES": 400}],
@@ -28,14 +29,21 @@ AXES = [
 
 # Combinations that host/ never builds for a GPU (host/limiter_options.cpp), or that make no other code.
 NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"APSLK_REGULARIZATION_PER_TRIANGLE": 1},
-                                           {"APSLK_CHEBYSHEV": 1}),
+                                           {"APSLK_CHEBYSHEV": 1}, {"APSLK_LIMITS_STRETCH": 1},
+                                           {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}),
+                **{file: ({"APSLK_LIMITS_STRETCH": 1},) for file in
+                   ("matrix_free_consistent.cl", "finish_solve.cl", "predict_positions.cl", "start_small_steps.cl",
+                    "update_velocities.cl")},
                 "gather_displacements.cl": ({"APSLK_WARM_START_SUB_STEPS": 8, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 1, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 4, "APSLK_CHEBYSHEV": 1}),
-                "order_triangle_values.cl": ({"APSLK_CHEBYSHEV": 1}, {"APSLK_POSITIONS_ONLY": 1}),
-                "measure_area_change.cl": ({"APSLK_CHEBYSHEV": 1}, {"APSLK_REGULARIZATION_PER_TRIANGLE": 1},
-                                           {"APSLK_POSITIONS_ONLY": 1}),
-                "assemble_gradients.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_POSITIONS_ONLY": 1},)}
+                "order_triangle_values.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0}, {"APSLK_POSITIONS_ONLY": 1},
+                                             {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1, "APSLK_LIMITS_STRETCH": 0}),
+                "measure_area_change.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0},
+                                           {"APSLK_REGULARIZATION_PER_TRIANGLE": 1}, {"APSLK_POSITIONS_ONLY": 1},
+                                           {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}),
+                "assemble_gradients.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_POSITIONS_ONLY": 1},
+                                          {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1})}
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,9 @@ apsl_buffers c_views(const CallerBuffers& buffers) {
             {v.velocities.buffer, v.velocities.offset},
             {v.inverse_masses.buffer, v.inverse_masses.offset},
             {v.rest_areas.buffer, v.rest_areas.offset},
-            {v.regularization.buffer, v.regularization.offset}};
+            {v.regularization.buffer, v.regularization.offset},
+            {v.rest_shapes.buffer, v.rest_shapes.offset},
+            {v.stretch_ceilings.buffer, v.stretch_ceilings.offset}};
 }
 
 struct CTopology {
@@ -275,7 +277,7 @@ TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {
     const MovingCloth cloth = moving_cloth(grid(3, 3, 1.0, 1.0, Diagonals::alternating), 1);
     const CTopology topology(cloth);
     apsl_options options = apsl_default_options();
-    options.reserved[5] = 5;
+    options.reserved[3] = 5;
     apsl_limiter* limiter = nullptr;
     CHECK(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &options, &limiter) ==
           APSL_ERROR_INVALID_ARGUMENT);

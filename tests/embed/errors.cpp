@@ -42,8 +42,8 @@ TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]"
     check_invalid("warm_start_sub_steps is 4294967295, expected a whole number >= 0 and <= 65536",
                   options({.warm_start_sub_steps = UINT32_MAX}));
     check_invalid("bound_interval is 0, expected a whole number >= 1", options({.bound_interval = 0}));
-    check_invalid("solver is 2, expected conjugate_gradient (0) or chebyshev (1)",
-                  options({.solver = static_cast<Solver>(2)}));
+    check_invalid("solver is 3, expected conjugate_gradient (0), chebyshev (1) or automatic (2)",
+                  options({.solver = static_cast<Solver>(3)}));
     check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",
                   options({.matrix = Matrix::printed, .solver = Solver::chebyshev}));
     check_invalid("solver is chebyshev, which needs the consistent matrix, matrix-free",

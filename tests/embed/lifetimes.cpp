@@ -86,6 +86,8 @@ void make_and_use_in_c(const MovingCloth& cloth, const CallerBuffers& buffers) {
                              {v.velocities.buffer, v.velocities.offset},
                              {v.inverse_masses.buffer, v.inverse_masses.offset},
                              {v.rest_areas.buffer, v.rest_areas.offset},
+                             {nullptr, 0},
+                             {nullptr, 0},
                              {nullptr, 0}};
     const Owned<cl_command_queue> queue = in_order_queue();
     apsl_stats stats{};

@@ -124,15 +124,15 @@ TEST_CASE("queued products: those of the cloth with most of them", "[filter]") {
     using host::CallBudget, host::queued_products;
     CallBudget one;
     one.add(Parameters{.regularization = 1.4f, .sub_steps = 3, .first_regularization = 1.1f});
-    CHECK(queued_products(one, 0) == 4);
-    CHECK(queued_products(one, 2) == 2);
+    CHECK(queued_products(one, 0, false) == 4);
+    CHECK(queued_products(one, 2, false) == 2);
     CallBudget same = one;
     same.add(Parameters{.regularization = 1.4f, .sub_steps = 3, .first_regularization = 1.1f});
-    CHECK(queued_products(same, 2) == 2);
+    CHECK(queued_products(same, 2, false) == 2);
     CallBudget others = one;
     others.add(Parameters{.regularization = 1.4f, .sub_steps = 5});
-    for (int sub_step = 0; sub_step < 5; ++sub_step) CHECK(queued_products(others, sub_step) == 4);
+    for (int sub_step = 0; sub_step < 5; ++sub_step) CHECK(queued_products(others, sub_step, false) == 4);
     CallBudget undamped;
     undamped.add(Parameters{.regularization = 1.0f, .sub_steps = 2, .max_iterations = 9});
-    CHECK(queued_products(undamped, 0) == 9);
+    CHECK(queued_products(undamped, 0, false) == 9);
 }

@@ -16,9 +16,9 @@ namespace apsl::test {
 std::string variant_name(const Options& options) {
     const std::string size =
         options.work_group_size == 0 ? "the default size" : std::to_string(options.work_group_size);
-    return std::string(options.solver == Solver::chebyshev    ? "chebyshev"
-                       : options.matrix == Matrix::consistent ? "consistent"
-                                                              : "printed") +
+    return std::string(resolved_solver(options) == Solver::chebyshev ? "chebyshev"
+                       : options.matrix == Matrix::consistent        ? "consistent"
+                                                                     : "printed") +
            (options.apply == Apply::assembled_csr ? ", assembled" : ", matrix-free") +
            (options.execution == Execution::one_group     ? ", one group of "
             : options.execution == Execution::many_groups ? ", many groups of "
@@ -42,7 +42,11 @@ Filtered filter_with_reference(const MovingCloth& cloth, const Options& options,
     std::vector<double> velocities = cloth.velocities;
     std::span<const double> alpha;
     if (options.regularization_per_triangle) alpha = cloth.regularization;
-    limiter.enqueue({cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, alpha}, parameters);
+    std::span<const double> shapes, ceilings;
+    if (options.limits_stretch) shapes = cloth.rest_shapes;
+    if (options.stretch_ceiling_per_triangle) ceilings = cloth.stretch_ceilings;
+    limiter.enqueue({cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, alpha, shapes, ceilings},
+                    parameters);
     return {velocities, limiter.read_stats()};
 }
 

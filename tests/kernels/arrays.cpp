@@ -163,29 +163,46 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       moved(predicted_of(source_cloths, vertex_places)),
       motion(poison<cl_float4>(adjacency.vertex_count)),
       total_correction(poison<cl_float4>(adjacency.vertex_count)),
-      gradients(gradients_of(source_cloths, solves, adjacency, triangle_places, p.regularization, alpha_per_triangle)),
-      residual(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].right_hand_side[a]; })),
-      scaled_diagonal(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].scaled_diagonal[a]; })),
+      gradients(with_stretches(
+          gradients_of(source_cloths, solves, adjacency, triangle_places, p.regularization, alpha_per_triangle))),
+      residual(
+          with_stretches(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].right_hand_side[a]; }))),
+      scaled_diagonal(
+          with_stretches(over_triangles([&](std::size_t c, std::size_t a) { return solves[c].scaled_diagonal[a]; }))),
       values(values_of(solves, adjacency, triangle_places)),
       product(poisoned_triangles()),
-      direction(poison<float>(adjacency.triangle_count)),
+      direction(poison<float>(2 * adjacency.triangle_count)),
       direction_product(poison<float>(adjacency.triangle_count)),
-      pressure(poison<float>(adjacency.triangle_count)),
+      pressure(poison<float>(2 * adjacency.triangle_count)),
       vertex_bounds(poison<float>(adjacency.vertex_count)),
-      start_errors(poisoned_triangles()),
-      ordered_rest_areas(over_triangles([&](std::size_t c, std::size_t a) { return sources[c].rest_areas[a]; })),
+      start_errors(with_stretches(poisoned_triangles())),
+      ordered_rest(ordered_rest_values()),
       ordered_scaling(over_triangles([&](std::size_t c, std::size_t a) { return sources[c].regularization[a]; })),
       caller_positions(placed(sources, &Cloth::positions, 3, position)),
       caller_velocities(placed(sources, &Cloth::velocities, 3, velocity)),
       inverse_masses(placed(sources, &Cloth::inverse_masses, 1, {1, array_offset})),
       rest_areas(placed(sources, &Cloth::rest_areas, 1, {1, array_offset})),
-      regularization(placed(sources, &Cloth::regularization, 1, {1, array_offset})) {
+      regularization(placed(sources, &Cloth::regularization, 1, {1, array_offset})),
+      rest_shapes(placed(sources, &Cloth::rest_shapes, 4, {4, array_offset})),
+      stretch_ceilings(placed(sources, &Cloth::stretch_ceilings, 1, {1, array_offset})) {
     for (std::size_t c = 0; c < cloth_count(); ++c) {
         const std::vector<double>& b = solves[c].right_hand_side;
         write_partial_sum(c, APSLK_PARTIAL_RESIDUAL_EVEN, squared_norm(solves[c], b));
         write_partial_sum(c, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN,
                           std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
     }
+}
+
+std::vector<float> Arrays::ordered_rest_values() const {
+    std::vector<float> all = over_triangles([&](std::size_t c, std::size_t a) { return sources[c].rest_areas[a]; });
+    const auto append = [&](const auto& value) {
+        const std::vector<float> run = over_triangles(value);
+        all.insert(all.end(), run.begin(), run.end());
+    };
+    for (const std::size_t n : {0u, 1u, 3u})
+        append([&](std::size_t c, std::size_t a) { return sources[c].rest_shapes[4 * a + n]; });
+    append([&](std::size_t c, std::size_t a) { return sources[c].stretch_ceilings[a]; });
+    return all;
 }
 
 std::vector<double> Arrays::of_cloth(const std::vector<float>& per_triangle, std::size_t cloth) const {
@@ -197,7 +214,8 @@ std::vector<double> Arrays::of_cloth(const std::vector<float>& per_triangle, std
 std::vector<float> Arrays::padding_of(const std::vector<float>& per_triangle) const {
     std::vector<float> padding;
     for (std::size_t c = 0; c < cloth_count(); ++c) {
-        const std::size_t end = c + 1 < cloth_count() ? adjacency.cloths[c + 1].triangle_begin : per_triangle.size();
+        const std::size_t end =
+            c + 1 < cloth_count() ? adjacency.cloths[c + 1].triangle_begin : adjacency.triangle_count;
         for (std::size_t n = adjacency.cloths[c].triangle_begin + adjacency.cloths[c].triangle_count; n < end; ++n)
             padding.push_back(per_triangle[n]);
     }

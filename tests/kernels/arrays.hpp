@@ -29,8 +29,8 @@ static_assert(sizeof(Gradients) == 32);
 /// The paper's: α = 1.2, ten sub-steps, all from the end of the step.
 inline constexpr Parameters paper_setting{.regularization = 1.2f, .sub_steps = 10};
 
-/// Every array of a limiter in guarded device memory, for one or more cloths: inputs as the reference has them, outputs
-/// poisoned. A test overwrites what it wants otherwise.
+/// Every array of a limiter in guarded device memory, those of rows with room for a run of stretches, for one or more
+/// cloths: inputs as the reference has them, outputs poisoned. A test overwrites what it wants otherwise.
 struct Arrays {
     /// alpha as in `parameters` unless per triangle; the solve state is that of a solve about to begin.
     Arrays(std::span<const Cloth> cloths, Matrix matrix, const Parameters& parameters, std::uint32_t groups,
@@ -63,16 +63,26 @@ struct Arrays {
     DeviceArray<float> values;   ///< the scaled matrix
     DeviceArray<float> product;  ///< poisoned, 0 in the padding; the rest is poisoned there too
     DeviceArray<float> direction, direction_product, pressure;
-    DeviceArray<float> vertex_bounds;                        ///< of bound_vertices
-    DeviceArray<float> start_errors;                         ///< of measure_step
-    DeviceArray<float> ordered_rest_areas, ordered_scaling;  ///< what order_triangle_values makes
+    DeviceArray<float> vertex_bounds;                  ///< of bound_vertices
+    DeviceArray<float> start_errors;                   ///< of measure_step
+    DeviceArray<float> ordered_rest, ordered_scaling;  ///< what order_triangle_values makes
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
+    DeviceArray<float> rest_shapes, stretch_ceilings;  ///< the caller's too
 
     std::size_t cloth_count() const { return sources.size(); }
     /// The cloth's numbers out of an array over (padded) triangles, in the caller's order.
     std::vector<double> of_cloth(const std::vector<float>& per_triangle, std::size_t cloth) const;
     /// What an array over triangles holds in the padding.
     std::vector<float> padding_of(const std::vector<float>& per_triangle) const;
+    /// What order_triangle_values and order_stretch_limits make of the cloths.
+    std::vector<float> ordered_rest_values() const;
+    /// A run of areas with a poisoned one of stretches after it.
+    template <class Value>
+    static std::vector<Value> with_stretches(std::vector<Value> areas) {
+        const std::vector<Value> more = poison<Value>(areas.size());
+        areas.insert(areas.end(), more.begin(), more.end());
+        return areas;
+    }
     /// Every bit set, but 0 in the padding: what the host sees to.
     std::vector<float> poisoned_triangles() const;
     /// One number a triangle (in the caller's order) for every cloth, as the kernels lay them out; 0 in the padding.

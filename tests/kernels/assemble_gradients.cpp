@@ -100,8 +100,8 @@ void check_gradients(const Arrays& arrays, bool alpha_per_triangle) {
 
 void poison_outputs(Arrays& arrays) {
     arrays.gradients.write(poison<Gradients>(arrays.gradients.size()));
-    arrays.residual.write(arrays.poisoned_triangles());
-    arrays.scaled_diagonal.write(arrays.poisoned_triangles());
+    arrays.residual.write(Arrays::with_stretches(arrays.poisoned_triangles()));
+    arrays.scaled_diagonal.write(Arrays::with_stretches(arrays.poisoned_triangles()));
     arrays.partials.write(poison<float>(arrays.partials.size()));
 }
 
@@ -148,7 +148,7 @@ TEST_CASE("assemble_gradients: writes no triangle of a stopped cloth", "[assembl
     arrays.edit_states([](apslk_solve_state& state) { state.stopped = 1; });
     launch::assemble_gradients(arrays, {});
     CHECK(same_bytes(arrays.gradients.read(), poison<Gradients>(arrays.gradients.size())));
-    CHECK(same_bytes(arrays.residual.read(), arrays.poisoned_triangles()));
+    CHECK(same_bytes(arrays.residual.read(), Arrays::with_stretches(arrays.poisoned_triangles())));
 }
 
 TEST_CASE("assemble_gradients: a triangle without area, free vertices or rest area has no part in the solve",

@@ -45,6 +45,12 @@ Cloth make_cloth(const Mesh& mesh, std::uint32_t seed) {
     for (std::size_t a = 0; a < stretch.size(); ++a) cloth.rest_areas[a] *= stretch[a];
     round_to_float(cloth.rest_areas);
     cloth.regularization = random_numbers(cloth.rest_areas.size(), 1.0, 3.0, seed + 4);
+    std::vector<double> narrower = cloth.positions;
+    for (std::size_t n = 0; n < narrower.size(); n += 3) narrower[n] *= 0.9;
+    cloth.rest_shapes = reference::rest_shapes<double>(*cloth.topology, narrower);
+    round_to_float(cloth.rest_shapes);
+    cloth.stretch_ceilings = random_numbers(cloth.rest_areas.size(), 1.02, 1.2, seed + 5);
+    for (std::size_t a = 4; a < cloth.stretch_ceilings.size(); a += 9) cloth.stretch_ceilings[a] = 0.0;
     return cloth;
 }
 

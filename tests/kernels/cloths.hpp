@@ -19,11 +19,13 @@ namespace apsl::test {
 /// kernels are given the same.
 struct Cloth {
     std::shared_ptr<const Topology> topology;
-    std::vector<double> positions;       ///< m, [3V]
-    std::vector<double> velocities;      ///< m/s, [3V]
-    std::vector<double> inverse_masses;  ///< 1/kg, [V], every seventh 0
-    std::vector<double> rest_areas;      ///< m², [T], within a third of the areas
-    std::vector<double> regularization;  ///< α, [T], from 1 to 3
+    std::vector<double> positions;         ///< m, [3V]
+    std::vector<double> velocities;        ///< m/s, [3V]
+    std::vector<double> inverse_masses;    ///< 1/kg, [V], every seventh 0
+    std::vector<double> rest_areas;        ///< m², [T], within a third of the areas
+    std::vector<double> regularization;    ///< α, [T], from 1 to 3
+    std::vector<double> rest_shapes;       ///< 1/m, [4T], of a cloth a tenth narrower
+    std::vector<double> stretch_ceilings;  ///< [T], from 1.02 to 1.2, every ninth 0
 };
 
 Cloth make_cloth(const Mesh& mesh, std::uint32_t seed);

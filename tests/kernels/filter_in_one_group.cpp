@@ -33,7 +33,8 @@ void poison_scratch(Arrays& arrays) {
     for (apslk_solve_state& state : states) state.adaptive_factor = 1.0f;
     arrays.states.write(states);
     for (DeviceArray<float>* array : {&arrays.residual, &arrays.scaled_diagonal, &arrays.product})
-        array->write(arrays.poisoned_triangles());
+        array->write(array == &arrays.product ? arrays.poisoned_triangles()
+                                              : Arrays::with_stretches(arrays.poisoned_triangles()));
 }
 
 void check_filtered(Arrays& arrays, const Build& build, const Parameters& parameters) {

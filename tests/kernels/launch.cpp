@@ -22,7 +22,9 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
                                 define("APSLK_VELOCITY_STRIDE", arrays.velocity_placement.stride) +
                                 define("APSLK_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
                                 define("APSLK_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
-                                define("APSLK_CHEBYSHEV", build.chebyshev ? 1 : 0);
+                                define("APSLK_CHEBYSHEV", build.chebyshev ? 1 : 0) +
+                                define("APSLK_LIMITS_STRETCH", build.limits_stretch ? 1 : 0) +
+                                define("APSLK_STRETCH_CEILING_PER_TRIANGLE", build.limits_stretch ? 1 : 0);
     // Never released, see transfer_queue() in support/opencl.cpp.
     static auto& programs = *new std::map<std::string, host::ProgramHandle>;
     static auto& kernels = *new std::map<std::string, host::Kernel>;
@@ -48,7 +50,9 @@ Buffers caller(const Arrays& a, const Build& build) {
             .velocities = view(a.caller_velocities, a.velocity_placement.offset),
             .inverse_masses = view(a.inverse_masses, a.array_offset),
             .rest_areas = view(a.rest_areas, a.array_offset),
-            .regularization = build.alpha_per_triangle ? view(a.regularization, a.array_offset) : BufferView{}};
+            .regularization = build.alpha_per_triangle ? view(a.regularization, a.array_offset) : BufferView{},
+            .rest_shapes = view(a.rest_shapes, a.array_offset),
+            .stretch_ceilings = view(a.stretch_ceilings, a.array_offset)};
 }
 
 void run(const host::Kernel& kernel, std::uint32_t groups, const Build& build, std::size_t cloths) {
@@ -97,6 +101,17 @@ void rest_areas(Arrays& a, const Build& build) {
     run(arguments::rest_areas(k, a, buffers.positions, buffers.rest_areas), a.groups, build, a.cloth_count());
 }
 
+void rest_shapes(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "rest_areas.cl", "rest_shapes");
+    const Buffers buffers = caller(a, build);
+    run(arguments::rest_shapes(k, a, buffers.positions, buffers.rest_shapes), a.groups, build, a.cloth_count());
+}
+
+void order_stretch_limits(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "order_triangle_values.cl", "order_stretch_limits");
+    run(arguments::order_stretch_limits(k, a, caller(a, build)), a.groups, build, a.cloth_count());
+}
+
 void order_triangle_values(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "order_triangle_values.cl", "order_triangle_values");
     run(arguments::order_triangle_values(k, a, caller(a, build)), a.groups, build, a.cloth_count());
@@ -109,7 +124,7 @@ void assemble_gradients(Arrays& a, const Build& build, int sub_step) {
 
 void measure_area_change(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "measure_area_change.cl", "measure_area_change");
-    run(arguments::measure_area_change(k, a), a.groups, build, a.cloth_count());
+    run(arguments::measure_area_change(k, a, a.pressure), a.groups, build, a.cloth_count());
 }
 
 void measure_step(Arrays& a, const Build& build) {

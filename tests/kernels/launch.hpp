@@ -16,6 +16,7 @@ struct Build {
     Matrix matrix = Matrix::consistent;
     bool alpha_per_triangle = false;
     bool chebyshev = false;
+    bool limits_stretch = false;  ///< with a ceiling of its own for each triangle
 };
 
 /// 1, 32, 64 and 256 work-items a group, as far as the device goes.
@@ -30,7 +31,10 @@ void set_parameters(Arrays& arrays, const Build& build, const apslk_parameter_bl
 void predict_positions(Arrays& arrays, const Build& build);
 /// Of the caller's positions, into the caller's rest areas.
 void rest_areas(Arrays& arrays, const Build& build);
+/// Likewise into the caller's rest shapes.
+void rest_shapes(Arrays& arrays, const Build& build);
 void order_triangle_values(Arrays& arrays, const Build& build);
+void order_stretch_limits(Arrays& arrays, const Build& build);
 void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
 void measure_area_change(Arrays& arrays, const Build& build);
 void measure_step(Arrays& arrays, const Build& build);

@@ -203,10 +203,10 @@ TEST_CASE("end_call: names the first vertex or triangle that is not finite", "[e
         CHECK(vertex.offender == APSLK_OFFENDER_VERTEX);
         CHECK(vertex.offender_index == 44);
         const apslk_stats triangle = broken(0, [&](Arrays& arrays) {
-            std::vector<float> rest_areas = arrays.ordered_rest_areas.read();
+            std::vector<float> rest_areas = arrays.ordered_rest.read();
             rest_areas[arrays.triangle_places[1][299]] = static_cast<float>(std::nan(""));
             rest_areas[arrays.triangle_places[1][131]] = -1.0f;
-            arrays.ordered_rest_areas.write(rest_areas);
+            arrays.ordered_rest.write(rest_areas);
         });
         CHECK(triangle.offender == APSLK_OFFENDER_TRIANGLE);
         CHECK(triangle.offender_index == 131);

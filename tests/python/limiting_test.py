@@ -45,6 +45,50 @@ class OneTriangle(unittest.TestCase):
         self.assertEqual((stats.sub_steps, stats.initial_max_area_change, stats.status), (0, 0, "off"))
 
 
+class StretchCeiling(unittest.TestCase):
+    """One triangle, two corners pinned: the third is pulled away along its edge."""
+
+    def limit(self, speed, ceiling, shapes=None, **options):
+        made = limiter(ONE_TRIANGLE, 3, limits_stretch=True, **options)
+        velocities = np.array([[0, 0, 0], [speed, 0, 0], [0, 0, 0]], np.float32)
+        shapes = apsl.rest_shapes(CORNER, ONE_TRIANGLE) if shapes is None else shapes
+        return made.limit(CORNER, velocities, [0, 2, 0], [0.5], time_step=TIME_STEP, rest_shapes=shapes,
+                          stretch_ceiling=ceiling)
+
+    def test_the_shape_of_a_right_triangle(self):
+        np.testing.assert_array_equal(apsl.rest_shapes(CORNER, ONE_TRIANGLE), [[1, 0, 0, 1]])
+        np.testing.assert_array_equal(apsl.rest_shapes(np.zeros((3, 3)), ONE_TRIANGLE), [[0, 0, 0, 0]])
+
+    def test_stretch_and_area_are_held_and_told_of(self):
+        velocities, stats = self.limit(64, 1.1)  # to twice its length
+        self.assertLess(stats.max_stretch, 1.11)
+        self.assertLess(stats.max_area_change, 0.02)
+        self.assertAlmostEqual(stats.initial_max_stretch_excess, 0.9, delta=1e-4)
+        self.assertEqual(stats.status, "ok")
+        self.assertLess(velocities[1, 0], 7)
+
+    def test_a_ceiling_for_each_triangle_and_none(self):
+        _, stats = self.limit(64, [1.1], stretch_ceiling_per_triangle=True)
+        self.assertLess(stats.max_stretch, 1.11)
+        for nothing in ({"ceiling": 0}, {"ceiling": 1.1, "shapes": [[0, 0, 0, 0]]}):
+            _, stats = self.limit(64, **nothing)
+            self.assertEqual((stats.max_stretch, stats.stretch_rows), (0, 0))
+
+    def test_what_is_missing_or_of_no_use_is_named(self):
+        made = limiter(ONE_TRIANGLE, 3, limits_stretch=True)
+        arrays = (CORNER, np.zeros((3, 3)), [0, 2, 0], [0.5])
+        with self.assertRaisesRegex(apsl.Error, "rest_shapes"):
+            made.limit(*arrays, stretch_ceiling=1.1)
+        with self.assertRaisesRegex(apsl.Error, "stretch_ceiling is 1, expected 0 .areas alone. or a finite number >= 1.01"):
+            made.limit(*arrays, rest_shapes=[[1, 0, 0, 1]], stretch_ceiling=1.0)
+        with self.assertRaisesRegex(apsl.Error, "rest_shapes"):
+            made.limit(*arrays, rest_shapes=[[1, 0, 0]], stretch_ceiling=1.1)
+        with self.assertRaisesRegex(apsl.Error, "limits_stretch is off"):
+            limiter(ONE_TRIANGLE, 3).limit(*arrays, stretch_ceiling=1.1)
+        with self.assertRaisesRegex(apsl.Error, "solver chebyshev"):
+            limiter(ONE_TRIANGLE, 3, limits_stretch=True, solver="conjugate_gradient")
+
+
 class Cloth(unittest.TestCase):
     def test_area_change_shrinks_to_what_stats_say(self):
         cloth = Grid(12)

@@ -68,7 +68,7 @@ TEST_CASE("a stage that is named without values takes the defaults of the stage"
     CHECK(scene.strain_limiting->parameters.first_regularization == defaults.first_regularization);
     CHECK(scene.strain_limiting->options.warm_start_sub_steps == 0);
     CHECK(scene.strain_limiting->options.execution == Execution::automatic);
-    CHECK(scene.strain_limiting->options.solver == Solver::conjugate_gradient);
+    CHECK(scene.strain_limiting->options.solver == Solver::automatic);
     CHECK(scene.strain_limiting->options.bound_interval == 1);
     CHECK(scene.strain_limiting->regularization.empty());
     CHECK(scene.colliders.size() == 3);
@@ -168,6 +168,22 @@ TEST_CASE("one regularization per triangle") {
     CHECK(scene.strain_limiting->regularization == std::vector<float>{1.0f, 2.5f});
 }
 
+TEST_CASE("a stretch ceiling, for all triangles or one for each") {
+    const auto limiting = [](const std::string& value) {
+        return *parse(R"({"mesh": {"grid": {}}, "strain_limiting": {"stretch_ceiling": )" + value + "}}")
+                    .strain_limiting;
+    };
+    const StrainLimiting all = limiting("1.1");
+    CHECK(all.parameters.stretch_ceiling == 1.1f);
+    CHECK(all.options.limits_stretch);
+    CHECK_FALSE(all.options.stretch_ceiling_per_triangle);
+    const StrainLimiting each = limiting("[1.1, 0, 1.01]");
+    CHECK(each.stretch_ceilings == std::vector<float>{1.1f, 0.0f, 1.01f});
+    CHECK(each.options.stretch_ceiling_per_triangle);
+    CHECK(each.options.limits_stretch);
+    CHECK_FALSE(limiting("0").options.limits_stretch);
+}
+
 TEST_CASE("what is wrong is named by its path, with what was expected") {
     const auto [rest, message] = GENERATE(table<std::string, std::string>({
         {R"("density": -1)", "density: expected a number > 0, got -1"},
@@ -185,7 +201,13 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("strain_limiting": {"alpha": 2})",
          "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, warm_start_sub_steps, "
          "solver, bound_interval, regularization, sub_steps, target_area_change, tolerance, max_iterations, "
-         "adaptive_threshold, first_regularization, stepping"},
+         "adaptive_threshold, first_regularization, stretch_ceiling, stepping"},
+        {R"("strain_limiting": {"stretch_ceiling": 1})",
+         "strain_limiting: stretch_ceiling is 1, expected 0 (areas alone) or a finite number >= 1.01"},
+        {R"("strain_limiting": {"stretch_ceiling": [1.1, 1]})",
+         "strain_limiting.stretch_ceiling[1]: expected 0 or a number ≥ 1.01, got 1"},
+        {R"("strain_limiting": {"stretch_ceiling": 1.1, "solver": "conjugate_gradient"})",
+         "strain_limiting: limits_stretch is on, which needs solver chebyshev"},
         {R"("strain_limiting": {"regularization": 0.99})",
          "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
         {R"("strain_limiting": {"regularization": [1, 0.5]})",
@@ -206,7 +228,7 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("strain_limiting": {"execution": "one_group", "apply": "assembled_csr"})",
          "strain_limiting: execution is one_group, which needs the consistent matrix, matrix-free"},
         {R"("strain_limiting": {"solver": "jacobi"})",
-         "strain_limiting.solver: expected one of conjugate_gradient, chebyshev, got \"jacobi\""},
+         "strain_limiting.solver: expected one of conjugate_gradient, chebyshev, automatic, got \"jacobi\""},
         {R"("strain_limiting": {"solver": "chebyshev", "matrix": "printed"})",
          "strain_limiting: solver is chebyshev, which needs the consistent matrix, matrix-free"},
         {R"("strain_limiting": {"solver": "chebyshev", "execution": "one_group"})",

@@ -74,6 +74,11 @@ MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed) {
     round_to_float(cloth.velocities);
     round_to_float(cloth.inverse_masses);
     round_to_float(cloth.regularization);
+    cloth.rest_shapes = reference::rest_shapes<double>(*cloth.topology, mesh.positions);
+    round_to_float(cloth.rest_shapes);
+    for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
+        cloth.stretch_ceilings.push_back(a % 9 == 4 ? 0.0 : number(1.02, 1.2));
+    round_to_float(cloth.stretch_ceilings);
     return cloth;
 }
 
@@ -95,7 +100,9 @@ CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options&
       velocities(placed(cloths, &MovingCloth::velocities, layout_of_velocities(options), offset)),
       inverse_masses(placed(cloths, &MovingCloth::inverse_masses, {1, options.inverse_mass_stride}, offset)),
       rest_areas(placed(cloths, &MovingCloth::rest_areas, {1, 1}, offset)),
-      regularization(placed(cloths, &MovingCloth::regularization, {1, 1}, offset)) {
+      regularization(placed(cloths, &MovingCloth::regularization, {1, 1}, offset)),
+      rest_shapes(placed(cloths, &MovingCloth::rest_shapes, {4, 4}, offset)),
+      stretch_ceilings(placed(cloths, &MovingCloth::stretch_ceilings, {1, 1}, offset)) {
 }
 
 Buffers CallerBuffers::views() const {
@@ -106,11 +113,15 @@ Buffers CallerBuffers::views() const {
                   .rest_areas = {rest_areas.get(), bytes},
                   .regularization = {}};
     if (options.regularization_per_triangle) views.regularization = {regularization.get(), bytes};
+    if (options.limits_stretch) views.rest_shapes = {rest_shapes.get(), bytes};
+    if (options.stretch_ceiling_per_triangle) views.stretch_ceilings = {stretch_ceilings.get(), bytes};
     return views;
 }
 
 std::vector<float> CallerBuffers::read_velocities() const {
-    for (const auto* array : {&positions, &inverse_masses, &rest_areas, &regularization}) array->read();
+    for (const auto* array :
+         {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes, &stretch_ceilings})
+        array->read();
     const std::vector<float> all = velocities.read();
     const Layout layout = layout_of_velocities(options);
     std::vector<float> numbers, gaps = all;

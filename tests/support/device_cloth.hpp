@@ -17,11 +17,13 @@ namespace apsl::test {
 /// and the device are given the same.
 struct MovingCloth {
     std::shared_ptr<const Topology> topology;
-    std::vector<double> positions;       ///< m, [3V]
-    std::vector<double> velocities;      ///< m/s, [3V]
-    std::vector<double> inverse_masses;  ///< 1/kg, [V]
-    std::vector<double> rest_areas;      ///< m², [T]
-    std::vector<double> regularization;  ///< α, [T]
+    std::vector<double> positions;         ///< m, [3V]
+    std::vector<double> velocities;        ///< m/s, [3V]
+    std::vector<double> inverse_masses;    ///< 1/kg, [V]
+    std::vector<double> rest_areas;        ///< m², [T]
+    std::vector<double> regularization;    ///< α, [T]
+    std::vector<double> rest_shapes;       ///< 1/m, [4T]
+    std::vector<double> stretch_ceilings;  ///< [T], from 1.02 to 1.2, every ninth 0
 };
 
 /// The mesh at rest where it lies, wavy now and about to be stretched by some 15 %: unequal masses, two pins.
@@ -38,7 +40,7 @@ struct CallerBuffers {
     Options options;
     std::size_t offset;
     std::size_t vertex_count;
-    DeviceArray<float> positions, velocities, inverse_masses, rest_areas, regularization;
+    DeviceArray<float> positions, velocities, inverse_masses, rest_areas, regularization, rest_shapes, stretch_ceilings;
 
     Buffers views() const;
     /// [3V] of all cloths, without stride and offset. Checks the guard bands of every buffer.

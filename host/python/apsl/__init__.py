@@ -10,8 +10,8 @@ Units are SI. V is the number of vertices, T of triangles. Arrays may be anythin
 
 from ._core import __version__
 from ._limiter import StrainLimiter
-from ._measures import area_change, devices, rest_areas
+from ._measures import area_change, devices, rest_areas, rest_shapes
 from ._records import Device, Error, Options, Parameters, Stats
 
 __all__ = ["Device", "Error", "Options", "Parameters", "Stats", "StrainLimiter", "__version__", "area_change",
-           "devices", "rest_areas"]
+           "devices", "rest_areas", "rest_shapes"]

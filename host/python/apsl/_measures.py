@@ -18,6 +18,15 @@ def rest_areas(positions: npt.ArrayLike, triangles: npt.ArrayLike) -> npt.NDArra
     return _core.rest_areas(positions, triangles)
 
 
+def rest_shapes(positions: npt.ArrayLike, triangles: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """1/m, [T, 4]: the triangles' shapes where the cloth is at rest, for a limiter with limits_stretch.
+
+    The inverse M of the 2 × 2 matrix of a triangle's edges x₁ − x₀ and x₂ − x₀ in its plane, row by row. Zeros, which
+    stand for no ceiling, where a triangle has no area. positions: m, [V, 3]. triangles: [T, 3].
+    """
+    return _core.rest_shapes(positions, triangles)
+
+
 def area_change(positions: npt.ArrayLike, triangles: npt.ArrayLike,
                 rest_areas: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """|A − A⁰| / A⁰ of each triangle, [T], 0 where A⁰ ≤ 0.

@@ -18,8 +18,11 @@ class Options(TypedDict, total=False):
     work_group_size: int  # a power of two; 0 takes what suits the device
     regularization_per_triangle: bool  # `regularization` is then an array [T] in every call
     warm_start_sub_steps: int  # sub-steps whose pressures the next call's solves start from
-    solver: Literal["conjugate_gradient", "chebyshev"]  # chebyshev: a fixed polynomial with the reach of α
+    # chebyshev: a fixed polynomial with the reach of α; automatic: that with limits_stretch, CG otherwise
+    solver: Literal["conjugate_gradient", "chebyshev", "automatic"]
     bound_interval: int  # by Chebyshev, ≥ 1: sub-steps from one bound of the matrix to the next
+    limits_stretch: bool  # `rest_shapes` are then given in every call, and `stretch_ceiling` counts
+    stretch_ceiling_per_triangle: bool  # `stretch_ceiling` is then an array [T] in every call
 
 
 class Parameters(TypedDict, total=False):
@@ -33,7 +36,11 @@ class Parameters(TypedDict, total=False):
     max_iterations: int  # ≥ 1, CG iterations of a solve
     adaptive_threshold: int  # 0: α stays as given; else more iterations than this raise it
     first_regularization: float  # 0: one α for all sub-steps; else > 1, that of the first
-    stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small steps from 20 sub-steps up
+    # 0, or ≥ 1.01: no principal stretch above this multiple of the rest shape; an array [T] with
+    # stretch_ceiling_per_triangle
+    stretch_ceiling: Union[float, npt.ArrayLike]
+    rest_shapes: npt.ArrayLike  # 1/m, [T, 4], with limits_stretch: see rest_shapes()
+    stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small from 20 sub-steps up
     enabled: bool  # False: the velocities come back as they were, with status "off"
 
 
@@ -53,6 +60,12 @@ class Stats:
     offender_index: int  # the first one
     raised_vertices: int  # that weighed more than given in the last sub-step
     greatest_mass_ratio: float  # their greatest mass over the one given; 1 where none was raised
+    max_stretch: float  # greatest principal stretch; this and what follows is 0 without limits_stretch
+    max_stretch_excess: float  # greatest max(0, principal stretch − ceiling)
+    rms_stretch_excess: float  # weighted with A⁰
+    initial_max_stretch_excess: float  # both at x + Δt v
+    initial_rms_stretch_excess: float
+    stretch_rows: int  # triangles that the ceiling held in the last sub-step
 
 
 @dataclass(frozen=True)

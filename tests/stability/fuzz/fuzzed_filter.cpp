@@ -32,8 +32,9 @@ bool DeviceFilter::fits(const FuzzCase& c) const {
 std::vector<Filtered> DeviceFilter::call(const std::vector<MovingCloth>& cloths,
                                          std::span<const Parameters> parameters) {
     const CallerBuffers buffers(cloths, options_, offset_);
-    const DeviceArray<float>* const inputs[] = {&buffers.positions, &buffers.inverse_masses, &buffers.rest_areas,
-                                                &buffers.regularization};
+    const DeviceArray<float>* const inputs[] = {&buffers.positions,   &buffers.inverse_masses,
+                                                &buffers.rest_areas,  &buffers.regularization,
+                                                &buffers.rest_shapes, &buffers.stretch_ceilings};
     std::vector<std::vector<float>> given;
     for (const auto* input : inputs) given.push_back(input->read());
     const std::vector<Stats> stats = filter(*limiter_, buffers, parameters);
@@ -52,8 +53,7 @@ std::vector<Filtered> DeviceFilter::call(const std::vector<MovingCloth>& cloths,
 }
 
 template <class Real>
-ReferenceFilter<Real>::ReferenceFilter(const FuzzCase& c)
-    : regularization_per_triangle_(c.options.regularization_per_triangle) {
+ReferenceFilter<Real>::ReferenceFilter(const FuzzCase& c) : options_(c.options) {
     for (const MovingCloth& cloth : c.cloths) limiters_.emplace_back(cloth.topology, c.options);
 }
 
@@ -68,11 +68,16 @@ std::vector<Filtered> ReferenceFilter<Real>::call(const std::vector<MovingCloth>
         };
         const std::vector<Real> positions = real(cloth.positions), masses = real(cloth.inverse_masses),
                                 areas = real(cloth.rest_areas);
-        const std::vector<Real> alpha = regularization_per_triangle_ ? real(cloth.regularization) : std::vector<Real>{};
+        const auto real_where = [&](bool given, const std::vector<double>& numbers) {
+            return given ? real(numbers) : std::vector<Real>{};
+        };
+        const std::vector<Real> alpha = real_where(options_.regularization_per_triangle, cloth.regularization);
+        const std::vector<Real> shapes = real_where(options_.limits_stretch, cloth.rest_shapes);
+        const std::vector<Real> ceilings = real_where(options_.stretch_ceiling_per_triangle, cloth.stretch_ceilings);
         std::vector<Real> velocities = real(cloth.velocities);
         const bool refused = refused_by_reference(cloth);
         try {
-            limiters_[n].enqueue({positions, velocities, masses, areas, alpha}, parameters[n]);
+            limiters_[n].enqueue({positions, velocities, masses, areas, alpha, shapes, ceilings}, parameters[n]);
             if (refused) throw std::runtime_error("took what it has to refuse");
         } catch (const Error& error) {
             if (!refused) throw;

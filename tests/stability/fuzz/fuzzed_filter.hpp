@@ -60,7 +60,7 @@ public:
     double epsilon() const override { return std::numeric_limits<Real>::epsilon(); }
 
 private:
-    bool regularization_per_triangle_;
+    Options options_;
     std::vector<reference::BasicStrainLimiter<Real>> limiters_;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t block_size = 100;
 // A driver compiles kernels for seconds and keeps them: so many sets of options at most.
-constexpr std::uint64_t option_sets = 15;
+constexpr std::uint64_t option_sets = 17;
 // Room for a component's run where x, y and z lie apart: more than the vertices of all meshes of a block.
 constexpr std::uint32_t most_vertices = 2048;
 
@@ -37,11 +37,21 @@ Options random_options(std::uint64_t number) {
         options.warm_start_sub_steps = 0;
         options.bound_interval = random.one_of({1u, 3u});
     }
+    if (number >= 15) {  // a stretch ceiling, for all triangles or one for each
+        options.matrix = Matrix::consistent;
+        options.apply = Apply::matrix_free;
+        options.execution = Execution::many_groups;
+        options.regularization_per_triangle = false;
+        options.warm_start_sub_steps = 0;
+        options.limits_stretch = true;
+        options.stretch_ceiling_per_triangle = number == 16;
+    }
     return options;
 }
 
-Parameters random_parameters(Random& random, bool may_adapt) {
+Parameters random_parameters(Random& random, bool may_adapt, bool limits_stretch) {
     Parameters p;
+    if (limits_stretch) p.stretch_ceiling = random.one_of({0.0f, 1.01f, 1.1f, 1.1f, 1.1f, 2.0f, 1e6f});
     p.time_step = random.one_of({1.0f / 60.0f, 1.0f / 60.0f, 1e-3f, 0.1f, 1e-6f});
     p.regularization = random.one_of({1.0f, 1.01f, 1.2f, 1.2f, 2.0f, 10.0f, 1e6f});
     p.sub_steps = random.one_of({0, 1, 1, 1, 2, 3, 5, 10, 20});
@@ -94,11 +104,11 @@ FuzzCase CaseMaker::make(std::uint64_t number) {
         c.cloths.push_back(random_state(random, meshes_[n], topologies_[n]));
     c.in_single_precision = random.chance(0.3);
     c.twice = random.chance(0.4);
-    const bool may_adapt = random.chance(0.015) && options_.solver == Solver::conjugate_gradient;
+    const bool may_adapt = random.chance(0.015) && resolved_solver(options_) == Solver::conjugate_gradient;
     for (std::uint32_t calls = random.one_of({1u, 1u, 1u, 2u, 3u}); calls > 0; --calls) {
         FuzzCall call;
         for (std::size_t n = 0; n < c.cloths.size(); ++n)
-            call.parameters.push_back(random_parameters(random, may_adapt));
+            call.parameters.push_back(random_parameters(random, may_adapt, options_.limits_stretch));
         call.carries_on = random.chance(0.5);
         if (random.chance(0.1)) call.bad = random_bad_number(random, c);
         c.calls.push_back(call);

@@ -31,7 +31,7 @@ const char* array_name(std::vector<double> MovingCloth::* array) {
                                                    : "rest_areas";
 }
 
-void print(const MovingCloth& cloth, bool with_alpha, std::ostream& out) {
+void print(const MovingCloth& cloth, const Options& options, std::ostream& out) {
     for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
         out << "  vertex " << v << ": position";
         for (std::size_t k = 0; k < 3; ++k) out << ' ' << cloth.positions[3 * v + k];
@@ -43,7 +43,10 @@ void print(const MovingCloth& cloth, bool with_alpha, std::ostream& out) {
         out << "  triangle " << a << ':';
         for (const std::uint32_t v : cloth.topology->triangles()[a]) out << ' ' << v;
         out << ", rest area " << cloth.rest_areas[a];
-        if (with_alpha) out << ", alpha " << cloth.regularization[a];
+        if (options.regularization_per_triangle) out << ", alpha " << cloth.regularization[a];
+        if (options.limits_stretch)
+            for (std::size_t k = 0; k < 4; ++k) out << (k == 0 ? ", rest shape " : " ") << cloth.rest_shapes[4 * a + k];
+        if (options.stretch_ceiling_per_triangle) out << ", ceiling " << cloth.stretch_ceilings[a];
         out << '\n';
     }
 }
@@ -58,7 +61,7 @@ void print(const FuzzCase& c, std::ostream& out) {
     out << "offset " << c.offset << '\n';
     for (std::size_t n = 0; n < c.cloths.size(); ++n) {
         out << "cloth " << n << ":\n";
-        print(c.cloths[n], c.options.regularization_per_triangle, out);
+        print(c.cloths[n], c.options, out);
     }
     for (std::size_t k = 0; k < c.calls.size(); ++k) {
         const FuzzCall& call = c.calls[k];

@@ -63,7 +63,7 @@ Check check_off(const MovingCloth& cloth, const Filtered& filtered) {
 // What α − 1 is in the bounds below. A Chebyshev solve has the reach of one that its degree goes with, which the least
 // and the greatest number of products may put off: α − 1 = 2.8 / degree².
 double damping_of(const CallFacts& facts, const Options& options, const Parameters& parameters) {
-    if (options.solver == Solver::conjugate_gradient) return facts.smallest_alpha - 1.0;
+    if (resolved_solver(options) == Solver::conjugate_gradient) return facts.smallest_alpha - 1.0;
     const double degree = 1.0 + chebyshev_products(facts.smallest_alpha, parameters.max_iterations);
     return 2.8 / (degree * degree);
 }
@@ -86,7 +86,7 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
     // size.
     const double reach =
         facts.scaled_excess * std::sqrt(2.0 / (facts.smallest_alpha - 1.0) * facts.greatest_inverse_mass);
-    const bool tame = options.matrix == Matrix::consistent && options.solver == Solver::conjugate_gradient &&
+    const bool tame = options.matrix == Matrix::consistent && resolved_solver(options) == Solver::conjugate_gradient &&
                       facts.smallest_alpha >= 1.01 && reach < 10.0 * facts.greatest_position &&
                       facts.max_change_error < 0.1;
     if (diverged && facts.ordinary_numbers && !facts.must_diverge && tame)
@@ -100,9 +100,12 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
         return broken("more sub-steps or iterations than allowed",
                       {{"sub-steps", stats.sub_steps}, {"iterations", stats.iterations}});
     if (!std::isfinite(stats.max_area_change) || !std::isfinite(stats.rms_area_change) ||
-        !std::isfinite(stats.residual))
-        return broken("statistics that are not finite without having diverged",
-                      {{"max", stats.max_area_change}, {"rms", stats.rms_area_change}, {"residual", stats.residual}});
+        !std::isfinite(stats.residual) || !std::isfinite(stats.max_stretch) ||
+        !std::isfinite(stats.max_stretch_excess) || !std::isfinite(stats.rms_stretch_excess))
+        return broken("statistics that are not finite without having diverged", {{"max", stats.max_area_change},
+                                                                                 {"rms", stats.rms_area_change},
+                                                                                 {"residual", stats.residual},
+                                                                                 {"stretch", stats.max_stretch}});
     if (stats.status == Status::ok &&
         stats.residual > std::max(ResolvedParameters(parameters).solve_tolerance, 1e-6f) * (1.0f + 1e-5f))
         return broken("ok, but a solve missed the tolerance", {{"residual", stats.residual}});
@@ -128,8 +131,9 @@ Check check_statistics(const CallFacts& facts, const Parameters& parameters, con
     return {};
 }
 
-// Of the two ends of a call the one with less RMS stands, and where either measure rose the status says so.
-Check check_never_worse(const CallFacts& facts, const Filtered& filtered) {
+// Of the two ends of a call the one with less RMS stands, and where either measure rose the status says so. With a
+// stretch ceiling areas may rise for the sake of the excess.
+Check check_never_worse(const CallFacts& facts, const Options& options, const Filtered& filtered) {
     const Stats& stats = filtered.stats;
     if (stats.status == Status::diverged || !facts.ordinary_numbers) return {};
     const double error = facts.max_change_error + 1e-4 * facts.rms_before;
@@ -140,6 +144,7 @@ Check check_never_worse(const CallFacts& facts, const Filtered& filtered) {
                        {"is", facts.max_before},
                        {"said RMS", stats.initial_rms_area_change},
                        {"is", facts.rms_before}});
+    if (options.limits_stretch) return {};
     // Rounding of the velocities comes after the two were compared.
     if (facts.capped_rms_after > facts.capped_rms_before + 2.0 * error)
         return broken("capped RMS area change rose",
@@ -165,7 +170,7 @@ Check check_bound(const MovingCloth& cloth, const CallFacts& facts, const Option
     if (options.matrix == Matrix::printed) bound *= std::sqrt(3.0 * facts.greatest_valence / damping);
     if (options.warm_start_sub_steps > 0) bound *= 2.0;
     // Σ |Δx|²/w = 2 Σ x q(x)² b̄² with b̄² ≤ b²/D, and x q² ≤ 4/3 q(0) = 4/3 · 1.07 degree².
-    if (options.solver == Solver::chebyshev) bound *= 2.0;
+    if (resolved_solver(options) == Solver::chebyshev) bound *= 2.0;
     const auto time_step = static_cast<double>(parameters.time_step);
     double squares = 0.0, rounding = 0.0;
     for (std::size_t n = 0; n < cloth.velocities.size(); ++n) {
@@ -201,7 +206,7 @@ Check check_momentum(const MovingCloth& cloth, const CallFacts& facts, const Opt
         shares += share * share;
     }
     const double unit = (filter.on_device() ? 0.5 * gradient_unit : 0.0) + 20.0 * filter.epsilon();
-    const double pressures = options.solver == Solver::chebyshev
+    const double pressures = resolved_solver(options) == Solver::chebyshev
                                  ? 3.0 / damping * facts.scaled_excess  // q(0) = 1.07 degree²
                                  : std::sqrt(facts.smallest_alpha) / damping * facts.scaled_excess *
                                        (options.warm_start_sub_steps > 0 ? 2.0 : 1.0);
@@ -234,7 +239,9 @@ std::optional<Violation> violation_of(const MovingCloth& cloth, const Options& o
     Check check = check_velocities(cloth, filtered);
     if (!check) check = check_status(facts, parameters, options, filtered);
     if (!check) check = check_statistics(facts, parameters, filtered);
-    if (!check) check = check_never_worse(facts, filtered);
+    if (!check) check = check_never_worse(facts, options, filtered);
+    // The bounds below are those of areas with the masses as given.
+    if (options.limits_stretch) return check ? check : check_idle(cloth, filtered);
     if (!check) check = check_bound(cloth, facts, options, parameters, filtered);
     if (!check) check = check_momentum(cloth, facts, options, parameters, filtered, filter);
     if (!check) check = check_idle(cloth, filtered);
@@ -243,7 +250,7 @@ std::optional<Violation> violation_of(const MovingCloth& cloth, const Options& o
 
 std::optional<Violation> disagreement(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
                                       const Filtered& device, const Filtered& reference) {
-    if (refused_by_reference(cloth)) return {};
+    if (refused_by_reference(cloth) || options.limits_stretch) return {};
     const CallFacts facts(cloth, options, parameters, device, epsilon);
     // Where the linearised areas are near the true ones and the matrix is far from singular: each of the two solves is
     // off by κ · tolerance in the scaled norm, κ ≤ (3 v + α − 1)/(α − 1), the device's matrix by its stored gradients.

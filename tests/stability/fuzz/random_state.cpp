@@ -77,6 +77,19 @@ void round_to_float(std::vector<double>& numbers) {
     for (double& number : numbers) number = static_cast<float>(number);
 }
 
+// Shapes as the positions have them, or other ones; ceilings of all sizes.
+void describe_stretch_limits(Random& random, MovingCloth& cloth) {
+    const double scale = random.one_of({1.0, 1.0, 1.0, 0.5, 1.5, 1e-6, 1e6});
+    for (double& number : cloth.rest_shapes) {
+        number *= scale;
+        if (!std::isfinite(static_cast<float>(number))) number = 0.0;  // of triangles next to nothing
+    }
+    if (random.chance(0.1))
+        cloth.rest_shapes[random.below(cloth.rest_shapes.size())] = random.one_of({0.0, -7.0, 1e20});
+    for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
+        cloth.stretch_ceilings.push_back(random.one_of({0.0, 1.01, 1.1, 1.1, 1.1, 2.0, 1e6}));
+}
+
 }  // namespace
 
 MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const Topology> topology) {
@@ -93,6 +106,7 @@ MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const
     round_to_float(cloth.positions);
     cloth.rest_areas = reference::areas<double>(*cloth.topology, cloth.positions);
     cloth.inverse_masses = reference::inverse_masses<double>(*cloth.topology, cloth.rest_areas, 0.2);
+    cloth.rest_shapes = reference::rest_shapes<double>(*cloth.topology, cloth.positions);
     for (double& inverse_mass : cloth.inverse_masses)
         if (!std::isfinite(inverse_mass)) inverse_mass = 1.0;  // of triangles without area
     cloth.velocities.assign(cloth.positions.size(), 0.0);
@@ -102,12 +116,13 @@ MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const
     const double alpha_above_1 = random.one_of({0.0, 0.01, 0.5, 1e6});
     for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
         cloth.regularization.push_back(1.0 + alpha_above_1 * random.number(0.5, 1.5));
+    describe_stretch_limits(random, cloth);
     if (random.chance(0.05)) {
         double& rest_area = cloth.rest_areas[random.below(cloth.rest_areas.size())];
         rest_area = random.one_of({0.0, -1.0, 1e-42, 1e-20, 1e20});
     }
-    for (auto* numbers :
-         {&cloth.positions, &cloth.velocities, &cloth.inverse_masses, &cloth.rest_areas, &cloth.regularization})
+    for (auto* numbers : {&cloth.positions, &cloth.velocities, &cloth.inverse_masses, &cloth.rest_areas,
+                          &cloth.regularization, &cloth.rest_shapes, &cloth.stretch_ceilings})
         round_to_float(*numbers);
     return cloth;
 }

@@ -85,6 +85,16 @@ private:
         return changed;
     }
 
+    // Some options need others.
+    static bool is_legal(const Options& options) {
+        try {
+            validate(options);
+        } catch (const Error&) {
+            return false;
+        }
+        return true;
+    }
+
     template <class Object, class Value>
     static bool reset(Object& object, Value Object::* field) {
         const Value standard = Object{}.*field;
@@ -103,7 +113,7 @@ private:
             return any;
         });
         for_each_field(option_fields, [&](const auto& field) {
-            changed |= attempt([&](FuzzCase& c) { return reset(c.options, field.member); });
+            changed |= attempt([&](FuzzCase& c) { return reset(c.options, field.member) && is_legal(c.options); });
         });
         for (std::size_t k = 0; k < case_.calls.size(); ++k)
             for (std::size_t n = 0; n < case_.cloths.size(); ++n) {
@@ -136,6 +146,9 @@ private:
                     cut(triangles);
                     cut(cloth.rest_areas);
                     cut(cloth.regularization);
+                    cut(cloth.stretch_ceilings);
+                    cloth.rest_shapes.erase(cloth.rest_shapes.begin() + static_cast<std::ptrdiff_t>(4 * first),
+                                            cloth.rest_shapes.begin() + static_cast<std::ptrdiff_t>(4 * end));
                     cloth.topology = Topology::build(triangles, cloth.inverse_masses.size());
                     return true;
                 });
@@ -201,6 +214,7 @@ private:
         each(&MovingCloth::inverse_masses, [](double) { return 1.0; });
         each(&MovingCloth::inverse_masses, [](double w) { return w > 0.0 ? 1.0 : 0.0; });
         each(&MovingCloth::regularization, [](double) { return 1.5; });
+        each(&MovingCloth::stretch_ceilings, [](double) { return 1.1; });
         each(&MovingCloth::rest_areas, [](double) { return 1.0; });
         for (const auto array : {&MovingCloth::positions, &MovingCloth::velocities, &MovingCloth::inverse_masses,
                                  &MovingCloth::rest_areas})

@@ -165,7 +165,7 @@ TEST_CASE("Chebyshev: what it does not take is refused", "[reference]") {
                     Error);
     CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, {.warm_start_sub_steps = 1, .solver = Solver::chebyshev}),
                     Error);
-    CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, {.solver = static_cast<Solver>(2)}), Error);
+    CHECK_THROWS_AS(reference::StrainLimiter(cloth.topology, {.solver = static_cast<Solver>(3)}), Error);
     reference::StrainLimiter limiter(cloth.topology, {.solver = Solver::chebyshev});
     std::vector<double> velocities(cloth.positions.size(), 0.0);
     const std::vector<double> alpha(cloth.rest_areas.size(), 2.0);

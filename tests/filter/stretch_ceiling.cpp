@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include "filter/filtered.hpp"
+#include "support/tolerances.hpp"
+
+#include <apsl/reference.hpp>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+constexpr Options with_ceiling{.execution = Execution::many_groups, .limits_stretch = true};
+
+std::vector<MovingCloth> cloths() {
+    return {moving_cloth(grid(17, 13, 1.0, 0.7, Diagonals::uniform), 1),
+            moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 2),
+            moving_cloth(grid(21, 9, 2.0, 1.0, Diagonals::random), 3),
+            moving_cloth(tetrahedron(), 4),
+            moving_cloth(book(5), 5),
+            moving_cloth(fan(9), 6),
+            moving_cloth(right_triangle(), 7)};
+}
+
+std::vector<std::shared_ptr<const Topology>> topologies_of(const std::vector<MovingCloth>& cloths) {
+    std::vector<std::shared_ptr<const Topology>> topologies;
+    for (const MovingCloth& cloth : cloths) topologies.push_back(cloth.topology);
+    return topologies;
+}
+
+/// Greatest principal stretch at the end of a step with these velocities, in double precision, of all triangles.
+double max_stretch(const MovingCloth& cloth, const std::vector<double>& velocities, double time_step) {
+    double greatest = 0.0;
+    for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a) {
+        const Triangle& t = cloth.topology->triangles()[a];
+        const auto edge = [&](std::size_t k, std::size_t axis) {
+            const auto at = [&](std::size_t v) {
+                return cloth.positions[3 * v + axis] + time_step * velocities[3 * v + axis];
+            };
+            return at(t[k]) - at(t[0]);
+        };
+        const double* M = cloth.rest_shapes.data() + 4 * a;
+        double p = 0.0, q = 0.0, r = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double first = edge(1, axis) * M[0] + edge(2, axis) * M[2];
+            const double second = edge(1, axis) * M[1] + edge(2, axis) * M[3];
+            p += first * first;
+            q += first * second;
+            r += second * second;
+        }
+        greatest = std::max(greatest, std::sqrt((p + r) / 2.0 + std::hypot((p - r) / 2.0, q)));
+    }
+    return greatest;
+}
+
+/// A square of n × n vertices, 1 m wide and hung by two corners, that falls with nothing but gravity and the limiter.
+struct Hanging {
+    explicit Hanging(std::uint32_t n) {
+        const Mesh mesh = grid(n, n, 1.0, 1.0, Diagonals::alternating);
+        cloth = moving_cloth(mesh, 1);
+        cloth.positions = mesh.positions;
+        for (double& x : cloth.positions) x = static_cast<float>(x);
+        cloth.inverse_masses = reference::inverse_masses<double>(*cloth.topology, cloth.rest_areas, 0.2);
+        for (const std::uint32_t pin : {0u, n - 1}) cloth.inverse_masses[pin] = 0.0;
+        for (double& w : cloth.inverse_masses) w = static_cast<float>(w);
+        std::fill(cloth.velocities.begin(), cloth.velocities.end(), 0.0);
+    }
+
+    void accelerate(double time_step) {
+        for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v)
+            if (cloth.inverse_masses[v] > 0.0) cloth.velocities[3 * v + 1] -= 9.81 * time_step;
+        for (double& v : cloth.velocities) v = static_cast<float>(v);
+    }
+
+    void move(double time_step) {
+        for (std::size_t n = 0; n < cloth.positions.size(); ++n)
+            cloth.positions[n] = static_cast<float>(cloth.positions[n] + time_step * cloth.velocities[n]);
+    }
+
+    MovingCloth cloth;
+};
+
+}  // namespace
+
+TEST_CASE("stretch ceiling: the device agrees with the reference", "[filter][stretch_ceiling]") {
+    const std::vector<MovingCloth> all = cloths();
+    const Parameters settings[] = {
+        {.regularization = 1.3f, .sub_steps = 1, .tolerance = 1e-4f, .stretch_ceiling = 1.05f},
+        {.regularization = 1.2f,
+         .sub_steps = 3,
+         .tolerance = 3e-4f,
+         .stretch_ceiling = 1.02f,
+         .stepping = Stepping::whole_step},
+        {.regularization = 1.2f, .sub_steps = 6, .tolerance = 3e-4f, .stretch_ceiling = 1.1f}};
+    for (const std::uint32_t work_group_size : {1u, 32u, 64u})
+        for (const bool per_triangle : {false, true}) {
+            Options options = with_ceiling;
+            options.work_group_size = work_group_size;
+            options.stretch_ceiling_per_triangle = per_triangle;
+            StrainLimiter limiter(device().context, device().id, topologies_of(all), options);
+            for (const Parameters& parameters : settings) {
+                const CallerBuffers buffers(all, options);
+                const std::vector<Stats> stats = filter(limiter, buffers, {&parameters, 1});
+                const std::vector<float> velocities = buffers.read_velocities();
+                auto begin = velocities.begin();
+                for (std::size_t c = 0; c < all.size(); ++c) {
+                    CAPTURE(work_group_size, per_triangle, c, parameters.sub_steps);
+                    const auto end = begin + static_cast<std::ptrdiff_t>(all[c].velocities.size());
+                    const Filtered got{{begin, end}, stats[c]};
+                    check_against_reference(got, all[c], options, parameters);
+                    const Stats want = filter_with_reference(all[c], options, parameters).stats;
+                    const auto near = [](float value) { return Approx(value).epsilon(2e-3).margin(2e-4); };
+                    CHECK(stats[c].iterations == want.iterations);
+                    CHECK(stats[c].max_stretch == near(want.max_stretch));
+                    CHECK(stats[c].max_stretch_excess == near(want.max_stretch_excess));
+                    CHECK(stats[c].rms_stretch_excess == near(want.rms_stretch_excess));
+                    CHECK(stats[c].initial_max_stretch_excess == near(want.initial_max_stretch_excess));
+                    CHECK(stats[c].initial_rms_stretch_excess == near(want.initial_rms_stretch_excess));
+                    CHECK(stats[c].stretch_rows <= all[c].rest_areas.size());
+                    if (!per_triangle)
+                        CHECK(static_cast<double>(stats[c].max_stretch) ==
+                              Approx(max_stretch(all[c], got.velocities, static_cast<double>(parameters.time_step)))
+                                  .epsilon(1e-4));
+                    begin = end;
+                }
+            }
+        }
+}
+
+TEST_CASE("stretch ceiling: a curtain that falls by gravity alone keeps it, and its areas",
+          "[filter][stretch_ceiling]") {
+    constexpr Parameters parameters{.stretch_ceiling = 1.1f};
+    constexpr double time_step = 1.0 / 60.0;
+    Hanging curtain(33);
+    StrainLimiter limiter(device().context, device().id, curtain.cloth.topology, with_ceiling);
+    double area_change = 0.0, stretch = 0.0;
+    for (int frame = 0; frame < 60; ++frame) {
+        curtain.accelerate(time_step);
+        const CallerBuffers buffers({&curtain.cloth, 1}, with_ceiling);
+        const Stats stats = filter(limiter, buffers, {&parameters, 1})[0];
+        CAPTURE(frame);
+        CHECK(stats.status == Status::ok);
+        const std::vector<float> velocities = buffers.read_velocities();
+        curtain.cloth.velocities.assign(velocities.begin(), velocities.end());
+        area_change = std::max(area_change, static_cast<double>(stats.max_area_change));
+        stretch = std::max(stretch, static_cast<double>(stats.max_stretch));
+        CHECK(max_stretch(curtain.cloth, curtain.cloth.velocities, time_step) ==
+              Approx(stats.max_stretch).epsilon(1e-3));
+        curtain.move(time_step);
+    }
+    CHECK(area_change < 0.02);
+    CHECK(stretch < 1.12);
+    CHECK(stretch > 1.09);  // it is drawn to the ceiling
+}
+
+TEST_CASE("stretch ceiling: cloths with ceilings of their own get the bytes they would get alone",
+          "[filter][stretch_ceiling]") {
+    const std::vector<MovingCloth> all = cloths();
+    const std::vector<Parameters> parameters{{.sub_steps = 5, .stretch_ceiling = 1.05f},
+                                             {.sub_steps = 4, .stretch_ceiling = 0.0f},
+                                             {.regularization = 1.2f, .sub_steps = 7, .stretch_ceiling = 1.2f},
+                                             {.enabled = false},
+                                             {.sub_steps = 2, .stretch_ceiling = 1.01f},
+                                             {.sub_steps = 3, .stretch_ceiling = 3.0f},
+                                             {.sub_steps = 0, .stretch_ceiling = 1.1f}};
+    Options options = with_ceiling;
+    options.work_group_size = 1;
+    StrainLimiter limiter(device().context, device().id, topologies_of(all), options);
+    for (int again = 0; again < 2; ++again) {
+        const CallerBuffers buffers(all, options);
+        const std::vector<Stats> stats = filter(limiter, buffers, parameters);
+        const std::vector<float> velocities = buffers.read_velocities();
+        auto begin = velocities.begin();
+        for (std::size_t c = 0; c < all.size(); ++c) {
+            CAPTURE(again, c);
+            const auto end = begin + static_cast<std::ptrdiff_t>(all[c].velocities.size());
+            const Filtered alone = filter_on_device(all[c], options, parameters[c]);
+            CHECK(std::equal(begin, end, alone.velocities.begin(), alone.velocities.end()));
+            CHECK(stats[c].status == alone.stats.status);
+            CHECK(stats[c].stretch_rows == alone.stats.stretch_rows);
+            begin = end;
+        }
+        CHECK(stats[1].max_stretch == 0.0f);  // no ceiling, nothing measured
+        CHECK(stats[6].stretch_rows == 0);    // no sub-step
+    }
+}
+
+TEST_CASE("stretch ceiling: a cloth at rest keeps every bit of its velocities", "[filter][stretch_ceiling]") {
+    Hanging curtain(9);
+    for (double& v : curtain.cloth.velocities) v = 0.0;
+    const Parameters parameters{.stretch_ceiling = 1.01f};
+    const Filtered got = filter_on_device(curtain.cloth, with_ceiling, parameters);
+    CHECK(greatest(got.velocities) < 1e-3);
+    CHECK(got.stats.stretch_rows == 0);
+    CHECK(got.stats.max_stretch_excess == 0.0f);
+}
+
+TEST_CASE("stretch ceiling: rest shapes from rest positions, or turned about in their planes, are the same",
+          "[filter][stretch_ceiling]") {
+    MovingCloth cloth = moving_cloth(grid(17, 13, 1.0, 0.7, Diagonals::uniform), 1);
+    const Parameters parameters{.regularization = 1.2f, .sub_steps = 4, .stretch_ceiling = 1.05f};
+    const Filtered given = filter_on_device(cloth, with_ceiling, parameters);
+    for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a) {
+        double* M = cloth.rest_shapes.data() + 4 * a;
+        const double angle = 0.3 + 0.1 * static_cast<double>(a), c = std::cos(angle), s = std::sin(angle);
+        const double turned[4] = {c * M[0] - s * M[1], s * M[0] + c * M[1], c * M[2] - s * M[3], s * M[2] + c * M[3]};
+        std::copy(std::begin(turned), std::end(turned), M);
+        if (a % 2 == 0) {  // and mirrored
+            M[0] = -M[0];
+            M[2] = -M[2];
+        }
+    }
+    const Filtered turned = filter_on_device(cloth, with_ceiling, parameters);
+    CHECK(difference(turned.velocities, given.velocities) <= 1e-4 * norm(given.velocities));
+
+    const MovingCloth flat = moving_cloth(grid(17, 13, 1.0, 0.7, Diagonals::uniform), 1);
+    StrainLimiter limiter(device().context, device().id, flat.topology, with_ceiling);
+    const CallerBuffers buffers({&flat, 1}, with_ceiling);
+    const DeviceArray<float> shapes(poison<float>(flat.rest_shapes.size()));
+    const Owned<cl_command_queue> queue = in_order_queue();
+    // At the positions at hand, which are wavy: what counts is that they are those of the reference.
+    require_success(
+        wait_and_release(limiter.enqueue_rest_shapes(queue.get(), buffers.views().positions, {shapes.get(), 0})),
+        "rest shapes");
+    const std::vector<double> want = reference::rest_shapes<double>(*flat.topology, flat.positions);
+    const std::vector<float> got = shapes.read();
+    for (std::size_t n = 0; n < want.size(); ++n)
+        CHECK(static_cast<double>(got[n]) == Approx(want[n]).epsilon(1e-4).margin(1e-3));
+}
+
+TEST_CASE("stretch ceiling: what is not finite ends a call and is named", "[filter][stretch_ceiling]") {
+    const MovingCloth cloth = moving_cloth(grid(9, 9, 1.0, 1.0, Diagonals::alternating), 8);
+    Options options = with_ceiling;
+    options.stretch_ceiling_per_triangle = true;
+    const Parameters parameters{.sub_steps = 4};
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        for (const auto member : {&MovingCloth::rest_shapes, &MovingCloth::stretch_ceilings}) {
+            MovingCloth broken = cloth;
+            const std::size_t width = (cloth.*member).size() / cloth.rest_areas.size();
+            (broken.*member)[width * 17] = bad;
+            const Filtered got = filter_on_device(broken, options, parameters);
+            CHECK(got.stats.status == Status::diverged);
+            CHECK(got.stats.offender == Offender::triangle);
+            CHECK(got.stats.offender_index == 17);
+            CHECK(got.velocities == cloth.velocities);
+        }
+}
+
+TEST_CASE("stretch ceiling: a sheet thrown against its pins at 2, 5 and 10 m/s stays whole",
+          "[filter][stretch_ceiling]") {
+    constexpr double time_step = 1.0 / 60.0;
+    Hanging start(65);
+    StrainLimiter limiter(device().context, device().id, start.cloth.topology, with_ceiling);
+    for (const double speed : {2.0, 5.0, 10.0}) {
+        // At 10 m/s the pins' triangles would be drawn to 14 times their length in one step.
+        const Parameters parameters{.sub_steps = speed < 10.0 ? 30 : 60, .stretch_ceiling = 1.1f};
+        Hanging curtain = start;
+        for (std::size_t v = 0; v < curtain.cloth.inverse_masses.size(); ++v)
+            if (curtain.cloth.inverse_masses[v] > 0.0) curtain.cloth.velocities[3 * v + 1] = speed;
+        double stretch = 0.0, area_change = 0.0;
+        for (int frame = 0; frame < 40; ++frame) {
+            curtain.accelerate(time_step);
+            const CallerBuffers buffers({&curtain.cloth, 1}, with_ceiling);
+            const Stats stats = filter(limiter, buffers, {&parameters, 1})[0];
+            const std::vector<float> velocities = buffers.read_velocities();
+            curtain.cloth.velocities.assign(velocities.begin(), velocities.end());
+            REQUIRE(all_finite(curtain.cloth.velocities));
+            stretch = std::max(stretch, static_cast<double>(stats.max_stretch));
+            area_change = std::max(area_change, static_cast<double>(stats.max_area_change));
+            curtain.move(time_step);
+        }
+        CAPTURE(speed, stretch, area_change);
+        CHECK(stretch < 1.2);
+        CHECK(area_change < 0.06);
+    }
+}
