@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Garments with the defaults, the tables of docs/accuracy.md: the greatest area change after the first ten frames and
-the mean over all frames; the greatest edge and principal stretch after the first ten. The meshes are not part of this repository, and nothing is fetched: where one is missing, this
-says where it comes from and where to put it.
+the mean over all frames; the greatest edge and principal stretch after the first ten. The meshes are not part of this
+repository, and nothing is fetched: where one is missing, this says where it comes from and where to put it.
 
     bench/garments.py MESHES [--program build/program/apsl]
 

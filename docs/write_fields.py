@@ -35,7 +35,7 @@ def schema_of(field):
             schema.setdefault("maximum", LARGEST)
     if "zero" in bounds:
         schema = {"oneOf": [{"const": 0}, schema]}
-    if field["name"] in ("regularization", "stretch_ceiling"):
+    if field["may_be_a_list"]:
         schema = {"oneOf": [schema, {"type": "array", "minItems": 1, "items": schema}]}
     return {**schema, "default": field["default"], "description": field["text"]}
 

@@ -157,6 +157,21 @@ void hand_over(cl_event end, cl_event* event) {
         clReleaseEvent(end);
 }
 
+/// What a cloth has at rest, by one of StrainLimiter's two calls, into `target`, an argument of this `name`.
+template <class Call>
+apsl_result enqueue_rest(const Call& call, apsl_limiter* limiter, cl_command_queue queue,
+                         const apsl_buffer_view* rest_positions, const apsl_buffer_view* target, const char* name,
+                         cl_uint wait_count, const cl_event* wait_list, cl_event* event) {
+    return guarded([&] {
+        require(limiter, "limiter");
+        require(rest_positions, "rest_positions");
+        require(target, name);
+        hand_over((limiter->limiter.*call)(queue, view_from(*rest_positions), view_from(*target),
+                                           events(wait_count, wait_list)),
+                  event);
+    });
+}
+
 }  // namespace
 
 const char* apsl_last_error(void) {
@@ -312,28 +327,16 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
 apsl_result apsl_limiter_enqueue_rest_areas(apsl_limiter* limiter, cl_command_queue queue,
                                             const apsl_buffer_view* rest_positions, const apsl_buffer_view* rest_areas,
                                             cl_uint wait_count, const cl_event* wait_list, cl_event* event) {
-    return guarded([&] {
-        require(limiter, "limiter");
-        require(rest_positions, "rest_positions");
-        require(rest_areas, "rest_areas");
-        hand_over(limiter->limiter.enqueue_rest_areas(queue, view_from(*rest_positions), view_from(*rest_areas),
-                                                      events(wait_count, wait_list)),
-                  event);
-    });
+    return enqueue_rest(&apsl::StrainLimiter::enqueue_rest_areas, limiter, queue, rest_positions, rest_areas,
+                        "rest_areas", wait_count, wait_list, event);
 }
 
 apsl_result apsl_limiter_enqueue_rest_shapes(apsl_limiter* limiter, cl_command_queue queue,
                                              const apsl_buffer_view* rest_positions,
                                              const apsl_buffer_view* rest_shapes, cl_uint wait_count,
                                              const cl_event* wait_list, cl_event* event) {
-    return guarded([&] {
-        require(limiter, "limiter");
-        require(rest_positions, "rest_positions");
-        require(rest_shapes, "rest_shapes");
-        hand_over(limiter->limiter.enqueue_rest_shapes(queue, view_from(*rest_positions), view_from(*rest_shapes),
-                                                       events(wait_count, wait_list)),
-                  event);
-    });
+    return enqueue_rest(&apsl::StrainLimiter::enqueue_rest_shapes, limiter, queue, rest_positions, rest_shapes,
+                        "rest_shapes", wait_count, wait_list, event);
 }
 
 apsl_result apsl_limiter_read_stats(const apsl_limiter* limiter, cl_command_queue queue, apsl_stats* stats,

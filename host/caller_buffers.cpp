@@ -56,30 +56,27 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
     check(buffers.inverse_masses, (counts.vertices - 1) * options.inverse_mass_stride + 1, Access::read,
           "buffers.inverse_masses");
     check(buffers.rest_areas, counts.triangles, Access::read, "buffers.rest_areas");
-    if (options.regularization_per_triangle)
-        check(buffers.regularization, counts.triangles, Access::read, "buffers.regularization");
-    else if (buffers.regularization.buffer)
-        invalid("buffers.regularization is given, but Options::regularization_per_triangle is off");
-    if (options.limits_stretch)
-        check(buffers.rest_shapes, 4 * counts.triangles, Access::read, "buffers.rest_shapes");
-    else if (buffers.rest_shapes.buffer)
-        invalid("buffers.rest_shapes is given, but Options::limits_stretch is off");
-    if (options.stretch_ceiling_per_triangle)
-        check(buffers.stretch_ceilings, counts.triangles, Access::read, "buffers.stretch_ceilings");
-    else if (buffers.stretch_ceilings.buffer)
-        invalid("buffers.stretch_ceilings is given, but Options::stretch_ceiling_per_triangle is off");
+    const auto check_optional = [&](bool on, const BufferView& view, std::size_t floats, const char* name,
+                                    const char* option) {
+        const std::string full_name = std::string("buffers.") + name;
+        if (on)
+            check(view, floats, Access::read, full_name.c_str());
+        else if (view.buffer)
+            invalid(full_name + " is given, but Options::" + option + " is off");
+    };
+    check_optional(options.regularization_per_triangle, buffers.regularization, counts.triangles, "regularization",
+                   "regularization_per_triangle");
+    check_optional(options.limits_stretch, buffers.rest_shapes, 4 * counts.triangles, "rest_shapes", "limits_stretch");
+    check_optional(options.stretch_ceiling_per_triangle, buffers.stretch_ceilings, counts.triangles, "stretch_ceilings",
+                   "stretch_ceiling_per_triangle");
 }
 
 const BufferView& corrected(const Buffers& buffers) {
     return buffers.velocities.buffer ? buffers.velocities : buffers.positions;
 }
 
-const BufferView& regularization_or_any(const Buffers& buffers) {
-    return buffers.regularization.buffer ? buffers.regularization : buffers.rest_areas;
-}
-
-const BufferView& stretch_ceilings_or_any(const Buffers& buffers) {
-    return buffers.stretch_ceilings.buffer ? buffers.stretch_ceilings : buffers.rest_areas;
+const BufferView& or_any(const BufferView& optional, const Buffers& buffers) {
+    return optional.buffer ? optional : buffers.rest_areas;
 }
 
 }  // namespace apsl::host

@@ -22,10 +22,8 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
 /// What a call corrects: velocities, or the positions where there are none.
 const BufferView& corrected(const Buffers& buffers);
 
-/// α of each triangle. Where one holds for all, another buffer: a kernel needs some buffer there even where it reads
+/// `optional`, one of `buffers`, where it is given; else another: a kernel needs some buffer there even where it reads
 /// none.
-const BufferView& regularization_or_any(const Buffers& buffers);
-/// Likewise.
-const BufferView& stretch_ceilings_or_any(const Buffers& buffers);
+const BufferView& or_any(const BufferView& optional, const Buffers& buffers);
 
 }  // namespace apsl::host

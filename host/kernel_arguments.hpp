@@ -37,13 +37,13 @@ const Kernel& predict_positions(const Kernel& kernel, const Arrays& a, const Buf
 template <class Arrays>
 const Kernel& order_triangle_values(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.triangle_order, a.ordered_rest, a.ordered_scaling,
-                         caller.rest_areas, regularization_or_any(caller));
+                         caller.rest_areas, or_any(caller.regularization, caller));
 }
 
 template <class Arrays>
 const Kernel& order_stretch_limits(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.triangle_order, a.ordered_rest, caller.rest_shapes,
-                         stretch_ceilings_or_any(caller));
+                         or_any(caller.stretch_ceilings, caller));
 }
 
 template <class Arrays>
@@ -176,7 +176,7 @@ const Kernel& filter_in_one_group(const Kernel& kernel, const Arrays& a, const A
                          a.moved, a.motion, a.total_correction, a.gradients, a.residual, a.scaled_diagonal, a.product,
                          a.direction, a.direction_product, pressure, a.ordered_rest, a.ordered_scaling, a.start_errors,
                          caller.positions, corrected(caller), caller.inverse_masses, caller.rest_areas,
-                         regularization_or_any(caller), pressure_stride);
+                         or_any(caller.regularization, caller), pressure_stride);
 }
 
 }  // namespace apsl::host::arguments

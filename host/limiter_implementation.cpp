@@ -248,27 +248,34 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
     return commands.end();
 }
 
+template <class SetArguments>
+cl_event StrainLimiter::Implementation::enqueue_rest(cl_command_queue queue, const BufferView& rest_positions,
+                                                     const BufferView& target, std::size_t floats, const char* name,
+                                                     std::span<const cl_event> wait_list,
+                                                     const SetArguments& set_arguments) {
+    check_queue(queue, wait_list, context, device);
+    check_view(rest_positions, position_floats(options, caller_counts), Access::read, context, "rest_positions");
+    check_view(target, floats, Access::write, context, name);
+    CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
+    launch(commands, set_arguments());
+    return commands.end();
+}
+
 cl_event StrainLimiter::Implementation::enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions,
                                                            const BufferView& areas,
                                                            std::span<const cl_event> wait_list) {
-    check_queue(queue, wait_list, context, device);
-    check_view(rest_positions, position_floats(options, caller_counts), Access::read, context, "rest_positions");
-    check_view(areas, caller_counts.triangles, Access::write, context, "rest_areas");
-    CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
-    launch(commands, arguments::rest_areas(kernels.rest_areas, arrays, rest_positions, areas));
-    return commands.end();
+    return enqueue_rest(queue, rest_positions, areas, caller_counts.triangles, "rest_areas", wait_list, [&]() -> auto& {
+        return arguments::rest_areas(kernels.rest_areas, arrays, rest_positions, areas);
+    });
 }
 
 cl_event StrainLimiter::Implementation::enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions,
                                                             const BufferView& shapes,
                                                             std::span<const cl_event> wait_list) {
     if (!options.limits_stretch) invalid("rest shapes are asked for, but Options::limits_stretch is off");
-    check_queue(queue, wait_list, context, device);
-    check_view(rest_positions, position_floats(options, caller_counts), Access::read, context, "rest_positions");
-    check_view(shapes, 4 * caller_counts.triangles, Access::write, context, "rest_shapes");
-    CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
-    launch(commands, arguments::rest_shapes(kernels.rest_shapes, arrays, rest_positions, shapes));
-    return commands.end();
+    return enqueue_rest(
+        queue, rest_positions, shapes, 4 * caller_counts.triangles, "rest_shapes", wait_list,
+        [&]() -> auto& { return arguments::rest_shapes(kernels.rest_shapes, arrays, rest_positions, shapes); });
 }
 
 }  // namespace apsl

@@ -35,6 +35,11 @@ struct StrainLimiter::Implementation {
 
     cl_event enqueue(cl_command_queue queue, const Buffers& buffers, std::span<const Parameters> parameters,
                      std::span<const cl_event> wait_list);
+    /// Queues the launch of a kernel that computes `floats` numbers of the rest positions into `target`.
+    template <class SetArguments>
+    cl_event enqueue_rest(cl_command_queue queue, const BufferView& rest_positions, const BufferView& target,
+                          std::size_t floats, const char* name, std::span<const cl_event> wait_list,
+                          const SetArguments& set_arguments);
     cl_event enqueue_rest_areas(cl_command_queue queue, const BufferView& rest_positions, const BufferView& areas,
                                 std::span<const cl_event> wait_list);
     cl_event enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions, const BufferView& shapes,

@@ -33,21 +33,19 @@ APSLK_INLINE float greatest_change_at_rest(float extent, float measured, uint tr
     return isfinite(rounding) ? fmax(rounding, APSLK_AT_REST) : APSLK_AT_REST;
 }
 
-// What is judged: the greater of area change and excess, and the squares of both.
+// What is judged: with a stretch ceiling the greater of area change and excess, and the squares of both.
 APSLK_INLINE float judged_max(apslk_area_change change) {
 #if APSLK_LIMITS_STRETCH
-    return fmax(change.max, change.max_excess);
-#else
-    return change.max;
+    change.max = fmax(change.max, change.max_excess);
 #endif
+    return change.max;
 }
 
 APSLK_INLINE float judged_rms(apslk_area_change change) {
 #if APSLK_LIMITS_STRETCH
-    return hypot(change.rms, change.rms_excess);
-#else
-    return change.rms;
+    change.rms = hypot(change.rms, change.rms_excess);
 #endif
+    return change.rms;
 }
 
 // The capped RMS decides, so that a single triangle does not cost the others their correction.

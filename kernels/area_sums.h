@@ -63,11 +63,9 @@ APSLK_INLINE void add_areas(apslk_area_sums* sums, apslk_triangle_geometry trian
 }
 
 #if APSLK_LIMITS_STRETCH
-// Triangles without a ceiling have no say. `rest`: the limiter's rest values.
-APSLK_INLINE void add_stretches(apslk_area_sums* sums, apslk_cloth cloth, apslk_triangle_geometry triangle,
-                                lanes rest_area, __global const float* rest, uint first) {
-    const apslk_rest_shape shape = load_rest_shape(cloth, rest, first);
-    const lanes stretch = select((lanes)(0.0f), principal_stretch(triangle, shape).value, shape.ceiling > 0.0f);
+// `drawn`: principal stretches. Triangles without a ceiling have no say.
+APSLK_INLINE void add_stretches(apslk_area_sums* sums, lanes rest_area, apslk_rest_shape shape, lanes drawn) {
+    const lanes stretch = select((lanes)(0.0f), drawn, shape.ceiling > 0.0f);
     const lanes excess = stretch_excess(stretch, shape.ceiling);
     const lanes weight = select((lanes)(0.0f), rest_area, rest_area > 0.0f);
     sums->max_stretch = fmax(sums->max_stretch, stretch);

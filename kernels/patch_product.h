@@ -8,7 +8,6 @@
 
 #include "gradients.h"
 #include "layout.h"
-#include "limits_stretch.h"
 #include "vertex_gather.h"
 #include "work_group.h"
 
@@ -49,13 +48,7 @@ APSLK_INLINE void gather_forces(uint first, uint last, __global const uint* patc
                                 __global const apslk_gradients* gradients, __global const float* values, uint run,
                                 __local float4* forces) {
     for (uint n = first + (uint)get_local_id(0); n < last; n += APSLK_WORK_GROUP_SIZE)
-#if APSLK_LIMITS_STRETCH
-        forces[n - first] =
-            sum_over_corners_of_rows(corner_offsets, corners, gradients, values, run, patch_vertices[n]);
-#else
-        forces[n - first] = sum_over_corners(corner_offsets, corners, gradients, values, patch_vertices[n]);
-    (void)run;
-#endif
+        forces[n - first] = sum_over_corners(corner_offsets, corners, gradients, values, run, patch_vertices[n]);
 }
 
 // (J̄ u)_a in units of APSLK_GRADIENT_UNIT.
@@ -79,7 +72,7 @@ APSLK_INLINE float multiply_patches(apslk_cloth cloth, bool active, __global con
     float curvature = 0.0f;
     for (uint patch = range.begin; patch < range.end; ++patch) {
         const uint2 first = patches[patch], last = patches[patch + 1];
-        gather_forces(first.y, last.y, patch_vertices, corner_offsets, corners, gradients, residual, 0u, forces);
+        gather_forces(first.y, last.y, patch_vertices, corner_offsets, corners, gradients, residual, cloth.run, forces);
         group_barrier();
         for (uint a = first.x + (uint)get_local_id(0); a < last.x; a += APSLK_WORK_GROUP_SIZE) {
             APSLK_PREFETCH(gradients + a + APSLK_PREFETCH_TRIANGLES);

@@ -26,9 +26,9 @@ APSLK_KERNEL void predict_positions(__global const apslk_cloth* cloths, __global
         states[c].discarded = 0;
         states[c].iterating = 0;
         states[c].initial_squared_residual = 0.0f;
-        const int status = parameters[c].enabled ? APSLK_STATUS_OK : APSLK_STATUS_OFF;
-        const apslk_stats none = {0,  0,  0.0f, 0.0f, 0.0f, 0.0f, 0.0f, status, APSLK_OFFENDER_NONE,
-                                  0u, 0u, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f,   0u};
+        apslk_stats none = {0};
+        none.status = parameters[c].enabled ? APSLK_STATUS_OK : APSLK_STATUS_OFF;
+        none.offender = APSLK_OFFENDER_NONE;
         stats[c] = none;
     }
 }

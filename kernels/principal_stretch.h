@@ -39,13 +39,22 @@ APSLK_INLINE lanes4 combined(lanes a, lanes4 p, lanes b, lanes4 q) {
     return sum;
 }
 
+APSLK_INLINE lanes4 scaled(lanes a, lanes4 p) {
+    lanes4 product;
+    product.x = a * p.x;
+    product.y = a * p.y;
+    product.z = a * p.z;
+    product.w = 0.0f;
+    return product;
+}
+
 APSLK_INLINE lanes scalar_product(lanes4 a, lanes4 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 APSLK_INLINE apslk_principal_stretch principal_stretch(apslk_triangle_geometry t, apslk_rest_shape shape) {
     // x₁ − x₀ is edge 2 and x₂ − x₀ less edge 1.
-    const lanes4 f0 = combined(shape.m00, t.edge[2], (lanes)(0.0f), t.edge[2]);
+    const lanes4 f0 = scaled(shape.m00, t.edge[2]);
     const lanes4 f1 = combined(shape.m01, t.edge[2], -shape.m11, t.edge[1]);
     // FᵀF = [p q; q r]: its eigenvalues are mean ± radius, and twice the angle of v₁ is that of (half, q).
     const lanes p = squared_length(f0), q = scalar_product(f0, f1), r = squared_length(f1);

@@ -10,6 +10,20 @@ APSLK_INLINE float3 rest_position(__global const uint* vertex_order, __global co
     return load_position(rest_positions, vertex_order[place]);
 }
 
+// x₁ − x₀ and x₂ − x₀ of a triangle at its place.
+typedef struct {
+    float3 first, second;
+} apslk_rest_edges;
+
+APSLK_INLINE apslk_rest_edges rest_edges(__global const uint* vertex_order, __global const uint* triangles,
+                                         __global const float* rest_positions, uint a) {
+    const float3 x0 = rest_position(vertex_order, rest_positions, triangles[3 * a]);
+    apslk_rest_edges edges;
+    edges.first = rest_position(vertex_order, rest_positions, triangles[3 * a + 1]) - x0;
+    edges.second = rest_position(vertex_order, rest_positions, triangles[3 * a + 2]) - x0;
+    return edges;
+}
+
 APSLK_KERNEL void rest_areas(__global const apslk_cloth* cloths, __global const uint* vertex_order,
                              __global const uint* triangle_order, __global const uint* triangles,
                              __global const float* rest_positions, ulong rest_position_offset, __global float* areas,
@@ -18,10 +32,8 @@ APSLK_KERNEL void rest_areas(__global const apslk_cloth* cloths, __global const 
     const apslk_range range = share_of(cloth.triangle_count, true);
     for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
-        const float3 x0 = rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a]);
-        const float3 x1 = rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a + 1]);
-        const float3 x2 = rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a + 2]);
-        areas[area_offset + triangle_order[a]] = 0.5f * length(cross(x1 - x0, x2 - x0));
+        const apslk_rest_edges e = rest_edges(vertex_order, triangles, rest_positions + rest_position_offset, a);
+        areas[area_offset + triangle_order[a]] = 0.5f * length(cross(e.first, e.second));
     }
 }
 
@@ -36,13 +48,9 @@ APSLK_KERNEL void rest_shapes(__global const apslk_cloth* cloths, __global const
     const apslk_range range = share_of(cloth.triangle_count, true);
     for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
-        const float3 x0 = rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a]);
-        const float3 first =
-            rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a + 1]) - x0;
-        const float3 second =
-            rest_position(vertex_order, rest_positions + rest_position_offset, triangles[3 * a + 2]) - x0;
-        const float base = length(first), doubled = length(cross(first, second));
-        const float height = doubled / base, along = dot(first, second) / base;
+        const apslk_rest_edges e = rest_edges(vertex_order, triangles, rest_positions + rest_position_offset, a);
+        const float base = length(e.first), doubled = length(cross(e.first, e.second));
+        const float height = doubled / base, along = dot(e.first, e.second) / base;
         const float4 shape =
             doubled > 0.0f ? (float4)(1.0f / base, -along / doubled, 0.0f, 1.0f / height) : (float4)(0.0f);
         vstore4(shape, triangle_order[a], shapes + shape_offset);

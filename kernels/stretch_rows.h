@@ -15,7 +15,6 @@ typedef struct {
     lanes4 gradient[3];
     lanes value;  // what a sub-step is to take of it
     lanes share;  // r
-    lanes stretch;
 } apslk_stretch_row;
 
 // ½ w g·g of a corner, of the plain row with itself and with the area row.
@@ -38,11 +37,12 @@ APSLK_INLINE lanes4 zero_unless(lanes_int condition, lanes4 v) {
     return v;
 }
 
-// What takes no part is zero. `area_excess`: the area row's right-hand side. `ceiling`: for this sub-step. Corner by
-// corner, not as a loop: where LLVM unrolls one, it leaves an intrinsic that Oclgrind does not have.
-APSLK_INLINE apslk_stretch_row stretch_row(apslk_triangle_geometry t, apslk_rest_shape shape, lanes rest_area,
-                                           lanes area_excess, lanes ceiling) {
-    const apslk_principal_stretch stretch = principal_stretch(t, shape);
+// `stretch`: of the triangles now. What takes no part is zero. `area_excess`: the area row's right-hand side.
+// `ceiling`: for this sub-step. Corner by corner, not as a loop: where LLVM unrolls one, it leaves an intrinsic that
+// Oclgrind does not have.
+APSLK_INLINE apslk_stretch_row stretch_row(apslk_triangle_geometry t, apslk_rest_shape shape,
+                                           apslk_principal_stretch stretch, lanes rest_area, lanes area_excess,
+                                           lanes ceiling) {
     // 2 A⁰ v₁·b_k.
     const lanes l1 = 2.0f * rest_area * (shape.m00 * stretch.material_x + shape.m01 * stretch.material_y);
     const lanes l2 = 2.0f * rest_area * (shape.m11 * stretch.material_y);
@@ -62,7 +62,6 @@ APSLK_INLINE apslk_stretch_row stretch_row(apslk_triangle_geometry t, apslk_rest
     const lanes_int part =
         shape.ceiling > 0.0f && stretch.value > ceiling - APSLK_STRETCH_MARGIN && left > APSLK_LEAST_ROW_SHARE * size;
     apslk_stretch_row row;
-    row.stretch = stretch.value;
     row.value = select((lanes)(0.0f), value, part);
     row.share = select((lanes)(0.0f), share, part);
     row.gradient[0] = zero_unless(part, g0);

@@ -101,16 +101,16 @@ typedef struct {
     lanes take_part;  // 1, or 0
 } apslk_assembled_stretches;
 
-// The stretch rows of triangles whose area rows have `area_excess` for right-hand side and `area_scale`.
-APSLK_INLINE apslk_assembled_stretches
-assemble_stretch_rows(apslk_cloth cloth, apslk_triangle_geometry t, lanes rest_area, lanes area_excess,
-                      lanes area_scale, __global const uint* triangles, __global const float* vertex_bounds,
-                      __global apslk_gradients* gradients, __global float* residual, __global float* scaled_diagonal,
-                      __global const float* rest, float error_left, __global const float* start_errors, uint a) {
-    const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
+// The stretch rows of triangles with this `stretch`, whose area rows have `area_excess` for right-hand side and
+// `area_scale`.
+APSLK_INLINE apslk_assembled_stretches assemble_stretch_rows(
+    apslk_cloth cloth, apslk_triangle_geometry t, apslk_rest_shape shape, apslk_principal_stretch stretch,
+    lanes rest_area, lanes area_excess, lanes area_scale, __global const uint* triangles,
+    __global const float* vertex_bounds, __global apslk_gradients* gradients, __global float* residual,
+    __global float* scaled_diagonal, float error_left, __global const float* start_errors, uint a) {
     lanes ceiling = shape.ceiling;
     if (error_left > 0.0f) ceiling += error_left * load_lanes(start_errors + cloth.run, a);
-    const apslk_stretch_row row = stretch_row(t, shape, rest_area, area_excess, ceiling);
+    const apslk_stretch_row row = stretch_row(t, shape, stretch, rest_area, area_excess, ceiling);
     const lanes bound = APSLK_MARGIN * bounded_diagonal(t, row.gradient[0], row.gradient[1], row.gradient[2], triangles,
                                                         vertex_bounds, a);
     const lanes scale = jacobi_scale(bound, rest_area);
@@ -125,7 +125,7 @@ assemble_stretch_rows(apslk_cloth cloth, apslk_triangle_geometry t, lanes rest_a
     pack_gradient(row.gradient[1], t.inverse_mass[1], scale, words + 2);
     pack_gradient(row.gradient[2], t.inverse_mass[2], scale, words + 4);
     words[6] = bits_of(row.share * scale * select((lanes)(0.0f), 1.0f / area_scale, area_scale > 0.0f));
-    const lanes weight = scale * rest_area * row.stretch;
+    const lanes weight = scale * rest_area * stretch.value;
     words[7] = bits_of(select((lanes)(0.0f), 1.0f / weight, weight > 0.0f));
     store_records(words, (__global int4*)rows, a);
     store_lanes(scale * value, residual + cloth.run, a);
@@ -171,9 +171,7 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
         // |g| is the length of the edge.
         const lanes damped = APSLK_MARGIN * bounded_diagonal(triangle, triangle.edge[0], triangle.edge[1],
                                                              triangle.edge[2], triangles, regularization, a);
-#if !APSLK_LIMITS_STRETCH
-        const lanes shift = 0.0f;
-#endif
+        lanes shift = 0.0f;
 #else
 #if APSLK_REGULARIZATION_PER_TRIANGLE
         (void)alpha;
@@ -183,37 +181,35 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
         const lanes given = alpha;
 #endif
         const lanes effective = effective_regularization(given, damping, adaptive_factor);
-        const lanes shift = (effective - 1.0f) / effective, damped = effective * triangle.diagonal;
+        const lanes damped = effective * triangle.diagonal;
+        lanes shift = (effective - 1.0f) / effective;
 #endif
         const lanes scale = jacobi_scale(damped, rest_area);
-        const lanes stretch = select((lanes)(0.0f), excess, scale > 0.0f);
-        const lanes r = scale * stretch;
+        const lanes area_excess = select((lanes)(0.0f), excess, scale > 0.0f);
+        const lanes r = scale * area_excess;
 
 #if APSLK_LIMITS_STRETCH
+        const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
+        const apslk_principal_stretch stretch = principal_stretch(triangle, shape);
         const apslk_assembled_stretches stretches =
-            assemble_stretch_rows(cloth, triangle, rest_area, stretch, scale, triangles, regularization, gradients,
-                                  residual, scaled_diagonal, rest, error_left, start_errors, a);
+            assemble_stretch_rows(cloth, triangle, shape, stretch, rest_area, area_excess, scale, triangles,
+                                  regularization, gradients, residual, scaled_diagonal, error_left, start_errors, a);
+        shift = stretches.take_part;
         sums.squares += stretches.squares;
+        add_stretches(&sums.areas, rest_area, shape, stretch.value);
 #endif
         lanes_int words[8];
         pack_gradient(cross_product(triangle.normal, triangle.edge[0]), triangle.inverse_mass[0], scale, words);
         pack_gradient(cross_product(triangle.normal, triangle.edge[1]), triangle.inverse_mass[1], scale, words + 2);
         pack_gradient(cross_product(triangle.normal, triangle.edge[2]), triangle.inverse_mass[2], scale, words + 4);
-#if APSLK_LIMITS_STRETCH
-        words[6] = bits_of(stretches.take_part);
-#else
         words[6] = bits_of(shift);
-#endif
         words[7] = bits_of(select((lanes)(0.0f), 1.0f / (scale * triangle.area), scale * triangle.area > 0.0f));
         store_records(words, (__global int4*)gradients, a);
         store_lanes(r, residual, a);
         store_lanes(damped, scaled_diagonal, a);
-        sums.squares += stretch * stretch;
+        sums.squares += area_excess * area_excess;
         sums.scaled_squares += r * r;
         add_areas(&sums.areas, triangle, rest_area);
-#if APSLK_LIMITS_STRETCH
-        add_stretches(&sums.areas, cloth, triangle, rest_area, rest, a);
-#endif
     }
     return sums;
 }
@@ -252,7 +248,8 @@ APSLK_INLINE apslk_area_sums measure_triangles(apslk_cloth cloth, bool active, _
         const lanes rest_area = load_lanes(rest, a);
         add_areas(&sums, triangle, rest_area);
 #if APSLK_LIMITS_STRETCH
-        add_stretches(&sums, cloth, triangle, rest_area, rest, a);
+        const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
+        add_stretches(&sums, rest_area, shape, principal_stretch(triangle, shape).value);
 #endif
     }
     return sums;

@@ -131,12 +131,8 @@ APSLK_INLINE void displace_vertices(apslk_cloth cloth, bool active, __global con
         const float4 x = moved[i];
         // One expression, which the compiler may fuse.
         if (x.w > 0.0f)
-            moved[i] = x - sqrt(2.0f * x.w) *
-#if APSLK_LIMITS_STRETCH
-                               sum_over_corners_of_rows(corner_offsets, corners, gradients, pressure, cloth.run, i);
-#else
-                               sum_over_corners(corner_offsets, corners, gradients, pressure, i);
-#endif
+            moved[i] =
+                x - sqrt(2.0f * x.w) * sum_over_corners(corner_offsets, corners, gradients, pressure, cloth.run, i);
     }
 }
 
@@ -170,12 +166,8 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
             float tension = 0.0f;  // K w'
             float4 change = (float4)(0.0f);
             if (small_step.solved) {
-#if APSLK_LIMITS_STRETCH
                 const apslk_corner_sums sums =
-                    sums_over_corners_of_rows(corner_offsets, corners, gradients, pressure, cloth.run, i);
-#else
-                const apslk_corner_sums sums = sums_over_corners(corner_offsets, corners, gradients, pressure, i);
-#endif
+                    sums_over_corners(corner_offsets, corners, gradients, pressure, cloth.run, i);
                 tension = sums.stiffness;
                 change = -sqrt(2.0f * effective) * sums.force;
             }

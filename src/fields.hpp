@@ -46,10 +46,12 @@ struct Field {
     const char* text;  ///< documentation, a line
     bool in_scenes =
         true;  ///< a key of strain_limiting; otherwise a scene says it elsewhere, or leaves it to the device
+    bool may_be_a_list = false;  ///< a scene may give one number for each triangle
 };
 
 /// Lower ceilings leave sub-steps nothing to work with.
-inline constexpr float least_stretch_ceiling = APSLK_LEAST_STRETCH_CEILING;
+inline constexpr double least_stretch_ceiling = 1.01;
+static_assert(static_cast<float>(least_stretch_ceiling) == APSLK_LEAST_STRETCH_CEILING);
 
 inline constexpr Bounds any_whole{.least = 0.0};
 inline constexpr Bounds at_least_one{.least = 1.0};
@@ -58,7 +60,7 @@ inline constexpr std::tuple parameter_fields{
     Field{"time_step", &Parameters::time_step, Bounds{.least = 0.0, .least_excluded = true}, "s", "Δt of Algorithm 1.",
           false},
     Field{"regularization", &Parameters::regularization, at_least_one, "",
-          "α, multiplies the diagonal of G (Section 4). Not read where each triangle has its own."},
+          "α, multiplies the diagonal of G (Section 4). Not read where each triangle has its own.", true, true},
     Field{"sub_steps", &Parameters::sub_steps, any_whole, "", "Solves a call, at most."},
     Field{"target_area_change", &Parameters::target_area_change, Bounds{.least = 0.0}, "",
           "No further sub-step once every |A − A⁰| / A⁰ is at or below it."},
@@ -73,10 +75,12 @@ inline constexpr std::tuple parameter_fields{
           Bounds{.least = 1.0, .least_excluded = true, .zero = "the same in every sub-step"}, "",
           "α of the first sub-step. From there to regularization, in the last, α − 1 changes by the same factor a "
           "sub-step. 0: α is the same in all."},
-    Field{"stretch_ceiling", &Parameters::stretch_ceiling, Bounds{.least = 1.01, .zero = "areas alone"}, "",
+    Field{"stretch_ceiling", &Parameters::stretch_ceiling,
+          Bounds{.least = least_stretch_ceiling, .zero = "areas alone"}, "",
           "No principal stretch above this multiple of the rest shape. 0: areas alone. With areas held, edges end "
           "between "
-          "1/this and this. Not read where each triangle has its own."},
+          "1/this and this. Not read where each triangle has its own.",
+          true, true},
     Field{"stepping", &Parameters::stepping, Bounds{}, "",
           "Which positions each sub-step linearises about. whole_step: the end of the step. small_steps: all but the "
           "last move on by an equal part of the step and correct there. automatic: small steps from 20 sub-steps up, "

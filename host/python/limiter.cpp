@@ -67,22 +67,21 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
     const Array<float> given_areas = numbers<float>(rest_areas, "rest_areas", triangle_count_);
     py::dict settings(arguments.attr("copy")());
     // One of the arrays that a call takes beside parameters, where the limiter was made for it.
-    const auto taken = [&](const host::BufferHandle& buffer, const char* name, const char* option, std::size_t count) {
+    const auto taken = [&](const host::BufferHandle& buffer, const char* name, const char* option,
+                           std::size_t floats_a_triangle) {
         std::optional<Array<float>> given;
         if (!buffer) return given;
         if (!settings.contains(name))
             refuse(name, "nothing", std::string("an array of real numbers (limiter made with ") + option + ")");
         py::object value = settings.attr("pop")(name);
-        // A row a triangle.
-        if (count > triangle_count_) value = py::module_::import("numpy").attr("asarray")(value).attr("reshape")(-1);
-        given = numbers<float>(value, name, count);
+        if (floats_a_triangle > 1)  // a row each
+            value = py::module_::import("numpy").attr("asarray")(value).attr("reshape")(-1);
+        given = numbers<float>(value, name, floats_a_triangle * triangle_count_);
         return given;
     };
-    const auto given_regularization =
-        taken(regularization_, "regularization", "regularization_per_triangle", triangle_count_);
-    const auto given_shapes = taken(rest_shapes_, "rest_shapes", "limits_stretch", 4 * triangle_count_);
-    const auto given_ceilings =
-        taken(stretch_ceilings_, "stretch_ceiling", "stretch_ceiling_per_triangle", triangle_count_);
+    const auto given_regularization = taken(regularization_, "regularization", "regularization_per_triangle", 1);
+    const auto given_shapes = taken(rest_shapes_, "rest_shapes", "limits_stretch", 4);
+    const auto given_ceilings = taken(stretch_ceilings_, "stretch_ceiling", "stretch_ceiling_per_triangle", 1);
     const Parameters parameters = with_arguments(Parameters{}, settings, "limit", parameter_fields);
     Array<float> limited({static_cast<py::ssize_t>(vertex_count_), py::ssize_t{3}});
     float* const result = limited.mutable_data();

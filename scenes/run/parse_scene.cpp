@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 #include <string_view>
 #include <type_traits>
 
@@ -152,39 +153,33 @@ void parse_field(SceneObject& object, const Field<Struct, Value>& field, Struct&
     }
 }
 
-// One for all triangles into `uniform`, or one for each, which are returned.
-std::vector<float> parse_triangle_values(SceneObject& object, const Field<Parameters, float>& field,
-                                         Parameters& uniform) {
+// One for all triangles into `uniform`, or one for each into `each`.
+void parse_triangle_values(SceneObject& object, const Field<Parameters, float>& field, Parameters& uniform,
+                           std::vector<float>& each) {
     const SceneValue given = object.find(field.name);
-    if (given.json == nullptr || !given.json->is_array()) {
-        parse_field(object, field, uniform);
-        return {};
-    }
+    if (given.json == nullptr || !given.json->is_array()) return parse_field(object, field, uniform);
     if (given.json->empty()) given.expected("a number, or one for each triangle");
-    std::vector<float> values;
     for (const SceneValue& entry : given.entries()) {
-        values.push_back(static_cast<float>(entry.number(range_of(field.bounds))));
-        if (!field.bounds.hold(values.back())) entry.expected("0 or a number ≥ 1.01");
+        each.push_back(static_cast<float>(entry.number(range_of(field.bounds))));
+        // Only of a field that may be 0.
+        if (!field.bounds.hold(each.back())) {
+            std::ostringstream text;
+            text << "0 or a number ≥ " << field.bounds.least;
+            entry.expected(text.str());
+        }
     }
-    return values;
-}
-
-// The keys that may hold one number a triangle.
-bool is_triangle_value(std::string_view name) {
-    return name == "regularization" || name == "stretch_ceiling";
 }
 
 StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     StrainLimiting settings;
     for_each_field(option_fields, [&](const auto& field) { parse_field(object, field, settings.options); });
     for_each_field(parameter_fields, [&](const auto& field) {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>) {
-            if (field.name == std::string_view("regularization"))
-                settings.regularization = parse_triangle_values(object, field, settings.parameters);
-            else if (field.name == std::string_view("stretch_ceiling"))
-                settings.stretch_ceilings = parse_triangle_values(object, field, settings.parameters);
-        }
-        if (!is_triangle_value(field.name)) parse_field(object, field, settings.parameters);
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>)
+            if (field.may_be_a_list)
+                return parse_triangle_values(
+                    object, field, settings.parameters,
+                    field.member == &Parameters::regularization ? settings.regularization : settings.stretch_ceilings);
+        parse_field(object, field, settings.parameters);
     });
     settings.options.regularization_per_triangle = !settings.regularization.empty();
     settings.options.stretch_ceiling_per_triangle = !settings.stretch_ceilings.empty();

@@ -57,18 +57,12 @@ bool are_legal(const LimiterSettings& settings) {
     return true;
 }
 
-// What a scheme's solver is compared with.
-LimiterSettings with_resolved_solver(LimiterSettings settings) {
-    settings.limiting.options.solver = resolved_solver(settings.limiting.options);
-    return settings;
-}
-
 class Search {
 public:
     Search(const TuningGoal& goal, const LimiterSettings& given, const TuningFreedom& freedom, int frames,
            const TrialRun& run)
         : goal_(goal),
-          given_(with_resolved_solver(given)),
+          given_(given),
           freedom_(freedom),
           frames_(frames),
           search_frames_(std::min(frames, std::max(30, frames / 4))),

@@ -31,7 +31,8 @@ using TrialRun = std::function<std::optional<Trial>(const LimiterSettings& setti
                                                     const std::function<bool(const Trial&)>& enough)>;
 
 /// Searches over the first quarter of the frames (30 at least) for the best settings, then confirms the best on all of
-/// them; what fails there makes place for the next best. Starts at `given`, the scene's own settings.
+/// them; what fails there makes place for the next best. Starts at `given`, the scene's own settings as
+/// limiter_settings gives them.
 /// None where a trial was interrupted.
 std::optional<Trial> search_settings(const TuningGoal& goal, const LimiterSettings& given, const TuningFreedom& freedom,
                                      int frames, const TrialRun& run);

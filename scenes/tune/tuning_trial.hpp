@@ -21,7 +21,7 @@ struct LimiterSettings {
     bool operator==(const LimiterSettings&) const = default;
 };
 
-/// The settings a scene has, the library's defaults where it names none.
+/// The settings a scene has, the library's defaults where it names none; the solver is resolved.
 LimiterSettings limiter_settings(const Scene& scene);
 
 /// The document of a scene whose settings are `before`, with these: what is the same keeps its words and its order.

@@ -16,12 +16,6 @@ constexpr float least_row_share = APSLK_LEAST_ROW_SHARE;
 constexpr float mass_added_per_stiffness = APSLK_MASS_ADDED_PER_STIFFNESS;
 
 template <class Real>
-Real weighted(const ConstraintRow<Real>& a, const ConstraintRow<Real>& b, const std::array<Real, 3>& w) {
-    return w[0] * a.gradients[0].dot(b.gradients[0]) + w[1] * a.gradients[1].dot(b.gradients[1]) +
-           w[2] * a.gradients[2].dot(b.gradients[2]);
-}
-
-template <class Real>
 constexpr ConstraintRow<Real> no_row() {
     return {Real(0), {Vector3<Real>::Zero(), Vector3<Real>::Zero(), Vector3<Real>::Zero()}};
 }
@@ -37,12 +31,8 @@ void StretchLimiting<Real>::start(const Topology& topology, const Buffers<Real>&
     shapes_.resize(count);
     ceilings_.resize(count);
     for (std::size_t a = 0; a < count; ++a) {
-        const Real* M = buffers.rest_shapes.data() + 4 * a;
-        RestShape<Real>& shape = shapes_[a];
-        shape[1] = {M[0], M[1]};
-        shape[2] = {M[2], M[3]};
-        shape[0] = -(shape[1] + shape[2]);
-        const bool has_shape = M[0] * M[3] - M[1] * M[2] != Real(0);
+        shapes_[a] = rest_shape(buffers.rest_shapes, a);
+        const bool has_shape = shapes_[a][1][0] * shapes_[a][2][1] - shapes_[a][1][1] * shapes_[a][2][0] != Real(0);
         const Real given = buffers.stretch_ceilings.empty() ? ceiling : buffers.stretch_ceilings[a];
         ceilings_[a] = has_shape && rest_areas_[a] > Real(0) ? given : Real(0);
     }
@@ -63,10 +53,19 @@ void StretchLimiting<Real>::start(const Topology& topology, const Buffers<Real>&
 }
 
 template <class Real>
-Real StretchLimiting<Real>::excess(std::size_t a, std::span<const Real> positions) const {
-    if (ceilings_[a] == Real(0)) return Real(0);
-    const Real value = principal_stretch(shapes_[a], topology_->triangles()[a], positions).value - ceilings_[a];
+Real StretchLimiting<Real>::stretch(std::size_t a, std::span<const Real> positions) const {
+    return principal_stretch(shapes_[a], topology_->triangles()[a], positions).value;
+}
+
+template <class Real>
+Real StretchLimiting<Real>::excess(std::size_t a, Real stretch) const {
+    const Real value = stretch - ceilings_[a];
     return value < Real(0) ? Real(0) : value;  // a NaN stays
+}
+
+template <class Real>
+Real StretchLimiting<Real>::excess(std::size_t a, std::span<const Real> positions) const {
+    return ceilings_[a] == Real(0) ? Real(0) : excess(a, stretch(a, positions));
 }
 
 template <class Real>
@@ -83,11 +82,10 @@ StretchExcess StretchLimiting<Real>::measure(std::span<const Real> positions) co
         const auto rest_area = static_cast<double>(rest_areas_[a]);
         weights += rest_area;
         if (ceilings_[a] == Real(0)) continue;
-        const double above = static_cast<double>(excess(a, positions));
-        const double stretch =
-            static_cast<double>(principal_stretch(shapes_[a], topology_->triangles()[a], positions).value);
-        sums.finite = sums.finite && stretch * stretch <= greatest;
-        sums.greatest_stretch = std::max(sums.greatest_stretch, stretch);
+        const Real drawn = stretch(a, positions);
+        const auto above = static_cast<double>(excess(a, drawn));
+        sums.finite = sums.finite && static_cast<double>(drawn) * static_cast<double>(drawn) <= greatest;
+        sums.greatest_stretch = std::max(sums.greatest_stretch, static_cast<double>(drawn));
         sums.max = std::max(sums.max, above);
         squares += rest_area * above * above;
         const double capped = std::min(above, 1.0);
@@ -113,10 +111,10 @@ ConstraintRow<Real> StretchLimiting<Real>::limited_row(std::size_t a, std::span<
     if (!(stretch_[a] > ceiling - Real(stretch_margin))) return no_row<Real>();
     const std::array<Real, 3> w{inverse_masses_[triangle[0]], inverse_masses_[triangle[1]],
                                 inverse_masses_[triangle[2]]};
-    const Real area_size = weighted(area, area, w);
     ConstraintRow<Real> limited = orthogonalized(row, area, w);
-    if (!(weighted(limited, limited, w) > Real(least_row_share) * weighted(row, row, w))) return no_row<Real>();
-    share_[a] = area_size > Real(0) ? weighted(row, area, w) / area_size : Real(0);
+    if (!(weighted_product(limited, limited, w) > Real(least_row_share) * weighted_product(row, row, w)))
+        return no_row<Real>();
+    share_[a] = share_of_other(row, area, w);
     limited.value *= Real(excess_taken);
     return limited;
 }

@@ -57,6 +57,8 @@ public:
     std::size_t bytes() const;                                                ///< held between calls
 
 private:
+    Real stretch(std::size_t a, std::span<const Real> positions) const;  ///< s₁
+    Real excess(std::size_t a, Real stretch) const;                      ///< of a triangle with a ceiling
     ConstraintRow<Real> limited_row(std::size_t a, std::span<const Real> positions, const ConstraintRow<Real>& area,
                                     Real start_left);
     void find_tension(std::span<const TriangleGeometry<Real>> geometry);

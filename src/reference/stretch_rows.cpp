@@ -12,14 +12,6 @@ namespace {
 template <class Real>
 using Triplets = std::vector<Eigen::Triplet<Real>>;
 
-/// ⟨a, b⟩ in the metric of the corners' inverse masses.
-template <class Real>
-Real product(const ConstraintRow<Real>& a, const ConstraintRow<Real>& b, const std::array<Real, 3>& inverse_masses) {
-    Real sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += inverse_masses[k] * a.gradients[k].dot(b.gradients[k]);
-    return sum;
-}
-
 template <class Real>
 TriangleVector<Real> inverse_masses_of_coordinates(std::span<const Real> inverse_masses) {
     TriangleVector<Real> each(static_cast<Eigen::Index>(3 * inverse_masses.size()));
@@ -43,6 +35,13 @@ RestShape<Real> rest_shape(const Triangle& triangle, std::span<const Real> rest_
     shape[2] = {Real(0), Real(1) / height};
     shape[0] = -(shape[1] + shape[2]);
     return shape;
+}
+
+template <class Real>
+RestShape<Real> rest_shape(std::span<const Real> rest_shapes, std::size_t triangle) {
+    const Real* M = rest_shapes.data() + 4 * triangle;
+    const Vector2<Real> first{M[0], M[1]}, second{M[2], M[3]};
+    return {-(first + second), first, second};
 }
 
 template <class Real>
@@ -82,11 +81,24 @@ ConstraintRow<Real> stretch_row(const RestShape<Real>& shape, const Triangle& tr
 }
 
 template <class Real>
+Real weighted_product(const ConstraintRow<Real>& a, const ConstraintRow<Real>& b,
+                      const std::array<Real, 3>& inverse_masses) {
+    Real sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += inverse_masses[k] * a.gradients[k].dot(b.gradients[k]);
+    return sum;
+}
+
+template <class Real>
+Real share_of_other(const ConstraintRow<Real>& row, const ConstraintRow<Real>& other,
+                    const std::array<Real, 3>& inverse_masses) {
+    const Real length = weighted_product(other, other, inverse_masses);
+    return length > Real(0) ? weighted_product(row, other, inverse_masses) / length : Real(0);
+}
+
+template <class Real>
 ConstraintRow<Real> orthogonalized(const ConstraintRow<Real>& row, const ConstraintRow<Real>& other,
                                    const std::array<Real, 3>& inverse_masses) {
-    const Real length = product(other, other, inverse_masses);
-    if (!(length > Real(0))) return row;
-    const Real share = product(row, other, inverse_masses) / length;
+    const Real share = share_of_other(row, other, inverse_masses);
     ConstraintRow<Real> result = row;
     result.value -= share * other.value;
     for (std::size_t k = 0; k < 3; ++k) result.gradients[k] -= share * other.gradients[k];
@@ -106,7 +118,7 @@ RowSystem<Real> row_system(const Topology& topology, std::span<const ConstraintR
         const Triangle& triangle = topology.triangles()[owners[r]];
         const std::array<Real, 3> w{inverse_masses[triangle[0]], inverse_masses[triangle[1]],
                                     inverse_masses[triangle[2]]};
-        const Real scale = std::sqrt(product(rows[r], rows[r], w));
+        const Real scale = std::sqrt(weighted_product(rows[r], rows[r], w));
         if (!(scale > Real(0))) continue;
         const auto n = static_cast<Eigen::Index>(r);
         system.scale[n] = scale;
@@ -154,6 +166,10 @@ TriangleVector<Real> row_bound(const RowSystem<Real>& system, std::span<const Re
 }
 
 #define APSL_INSTANTIATE(Real)                                                                                         \
+    template RestShape<Real> rest_shape(std::span<const Real>, std::size_t);                                           \
+    template Real weighted_product(const ConstraintRow<Real>&, const ConstraintRow<Real>&,                             \
+                                   const std::array<Real, 3>&);                                                        \
+    template Real share_of_other(const ConstraintRow<Real>&, const ConstraintRow<Real>&, const std::array<Real, 3>&);  \
     template RestShape<Real> rest_shape(const Triangle&, std::span<const Real>);                                       \
     template PrincipalStretch<Real> principal_stretch(const RestShape<Real>&, const Triangle&, std::span<const Real>); \
     template ConstraintRow<Real> area_row(const TriangleGeometry<Real>&, Real);                                        \

@@ -25,6 +25,10 @@ using RestShape = std::array<Vector2<Real>, 3>;
 template <class Real>
 RestShape<Real> rest_shape(const Triangle& triangle, std::span<const Real> rest_positions);
 
+/// Of a triangle in Buffers::rest_shapes, [4T].
+template <class Real>
+RestShape<Real> rest_shape(std::span<const Real> rest_shapes, std::size_t triangle);
+
 /// The greatest singular value of F and its directions: F `material` = `value` · `spatial`. Where both singular values
 /// are alike, the direction is that of the rest shape's x.
 template <class Real>
@@ -55,9 +59,20 @@ template <class Real>
 ConstraintRow<Real> stretch_row(const RestShape<Real>& shape, const Triangle& triangle, std::span<const Real> positions,
                                 Real rest_area, Real ceiling);
 
-/// `row` less r times `other`, r = ⟨∇row, ∇other⟩ / ⟨∇other, ∇other⟩ in the metric of the corners' inverse masses: what
-/// `row` demands beyond `other`. Solving with the pair (other, the result) in place of (other, row) gives the same
-/// displacements and the same multiplier of `row`. `row` itself where `other` moves nothing.
+/// r = ⟨∇row, ∇other⟩ / ⟨∇other, ∇other⟩ in the metric of the corners' inverse masses: how much of `other` is in `row`.
+/// 0 where `other` moves nothing.
+template <class Real>
+Real share_of_other(const ConstraintRow<Real>& row, const ConstraintRow<Real>& other,
+                    const std::array<Real, 3>& inverse_masses);
+
+/// ⟨∇a, ∇b⟩ in the metric of the corners' inverse masses.
+template <class Real>
+Real weighted_product(const ConstraintRow<Real>& a, const ConstraintRow<Real>& b,
+                      const std::array<Real, 3>& inverse_masses);
+
+/// `row` less r times `other`, r as in share_of_other: what `row` demands beyond `other`. Solving with the pair (other,
+/// the result) in place of (other, row) gives the same displacements and the same multiplier of `row`. `row` itself
+/// where `other` moves nothing.
 template <class Real>
 ConstraintRow<Real> orthogonalized(const ConstraintRow<Real>& row, const ConstraintRow<Real>& other,
                                    const std::array<Real, 3>& inverse_masses);

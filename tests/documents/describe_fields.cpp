@@ -54,6 +54,7 @@ Json described(const std::tuple<Fields...>& table) {
         json["unit"] = field.unit;
         json["text"] = field.text;
         json["in_scenes"] = field.in_scenes;
+        json["may_be_a_list"] = field.may_be_a_list;
         fields.push_back(json);
     });
     return fields;

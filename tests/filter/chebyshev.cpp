@@ -10,28 +10,8 @@
 using namespace apsl;
 using namespace apsl::test;
 
-namespace {
-
-std::vector<MovingCloth> cloths() {
-    return {moving_cloth(grid(17, 13, 1.0, 0.7, Diagonals::uniform), 1),
-            moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 2),
-            moving_cloth(grid(21, 9, 2.0, 1.0, Diagonals::random), 3),
-            moving_cloth(tetrahedron(), 4),
-            moving_cloth(book(5), 5),
-            moving_cloth(fan(9), 6),
-            moving_cloth(right_triangle(), 7)};
-}
-
-std::vector<std::shared_ptr<const Topology>> topologies_of(const std::vector<MovingCloth>& cloths) {
-    std::vector<std::shared_ptr<const Topology>> topologies;
-    for (const MovingCloth& cloth : cloths) topologies.push_back(cloth.topology);
-    return topologies;
-}
-
-}  // namespace
-
 TEST_CASE("Chebyshev agrees with the reference: whole and small steps, a fixed and a rising alpha", "[filter]") {
-    const std::vector<MovingCloth> all = cloths();
+    const std::vector<MovingCloth> all = small_cloths();
     // The tolerance is the comparison's alone.
     const Parameters settings[] = {
         {.regularization = 1.3f, .sub_steps = 1, .tolerance = 1e-4f},
@@ -70,7 +50,7 @@ TEST_CASE("Chebyshev agrees with the reference: whole and small steps, a fixed a
 }
 
 TEST_CASE("Chebyshev: cloths with parameters of their own get the bytes they would get alone", "[filter]") {
-    const std::vector<MovingCloth> all = cloths();
+    const std::vector<MovingCloth> all = small_cloths();
     // Schedules that rise and fall, other counts of sub-steps, one off, one at α = 1.
     const std::vector<Parameters> parameters{
         {.regularization = 1.4f, .sub_steps = 5, .first_regularization = 1.02f, .stepping = Stepping::small_steps},

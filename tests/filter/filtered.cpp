@@ -26,6 +26,22 @@ std::string variant_name(const Options& options) {
            size;
 }
 
+std::vector<MovingCloth> small_cloths() {
+    return {moving_cloth(grid(17, 13, 1.0, 0.7, Diagonals::uniform), 1),
+            moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 2),
+            moving_cloth(grid(21, 9, 2.0, 1.0, Diagonals::random), 3),
+            moving_cloth(tetrahedron(), 4),
+            moving_cloth(book(5), 5),
+            moving_cloth(fan(9), 6),
+            moving_cloth(right_triangle(), 7)};
+}
+
+std::vector<std::shared_ptr<const Topology>> topologies_of(const std::vector<MovingCloth>& cloths) {
+    std::vector<std::shared_ptr<const Topology>> topologies;
+    for (const MovingCloth& cloth : cloths) topologies.push_back(cloth.topology);
+    return topologies;
+}
+
 Filtered filter_on_device(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
                           std::size_t offset) {
     StrainLimiter limiter(device().context, device().id, cloth.topology, options);

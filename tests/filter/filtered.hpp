@@ -26,6 +26,10 @@ constexpr Options one_group = variants[4];
 /// A polynomial in place of CG.
 constexpr Options by_chebyshev{.execution = Execution::many_groups, .solver = Solver::chebyshev};
 
+/// One of each kind of small mesh.
+std::vector<MovingCloth> small_cloths();
+std::vector<std::shared_ptr<const Topology>> topologies_of(const std::vector<MovingCloth>& cloths);
+
 /// For messages: "printed, assembled, many groups of 64".
 std::string variant_name(const Options& options);
 

@@ -36,13 +36,6 @@ std::array<double, 3> corner_masses(const Cloth& cloth, std::size_t a) {
     return {cloth.inverse_masses[t[0]], cloth.inverse_masses[t[1]], cloth.inverse_masses[t[2]]};
 }
 
-double weighted(const reference::ConstraintRow<double>& a, const reference::ConstraintRow<double>& b,
-                const std::array<double, 3>& w) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) sum += w[k] * a.gradients[k].dot(b.gradients[k]);
-    return sum;
-}
-
 BothRows both_rows(const Cloth& cloth) {
     const std::size_t count = cloth.rest_areas.size();
     BothRows both;
@@ -57,9 +50,7 @@ BothRows both_rows(const Cloth& cloth) {
             reference::area_row(reference::triangle_geometry<double>(triangle, cloth.positions), cloth.rest_areas[a]);
         limited = {0.0, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}};
         both.share.push_back(0.0);
-        const double* M = cloth.rest_shapes.data() + 4 * a;
-        const reference::RestShape<double> shape{Eigen::Vector2d(-M[0] - M[2], -M[1] - M[3]),
-                                                 Eigen::Vector2d(M[0], M[1]), Eigen::Vector2d(M[2], M[3])};
+        const auto shape = reference::rest_shape<double>(cloth.rest_shapes, a);
         const double ceiling = cloth.stretch_ceilings[a];
         both.stretch.push_back(reference::principal_stretch<double>(shape, triangle, cloth.positions).value);
         if (ceiling == 0.0 || both.stretch[a] <= ceiling - margin) continue;
@@ -67,7 +58,7 @@ BothRows both_rows(const Cloth& cloth) {
         const auto plain =
             reference::stretch_row<double>(shape, triangle, cloth.positions, cloth.rest_areas[a], ceiling);
         limited = reference::orthogonalized(plain, area, w);
-        if (weighted(area, area, w) > 0.0) both.share[a] = weighted(plain, area, w) / weighted(area, area, w);
+        both.share[a] = reference::share_of_other(plain, area, w);
         limited.value *= excess_taken;
     }
     both.system = reference::row_system<double>(*cloth.topology, both.rows, owners, cloth.inverse_masses);

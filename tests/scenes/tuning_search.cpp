@@ -41,6 +41,7 @@ struct MadeUp {
 
 LimiterSettings ten_sub_steps() {
     LimiterSettings settings;
+    settings.limiting.options.solver = Solver::conjugate_gradient;
     settings.limiting.parameters.sub_steps = 10;
     settings.limiting.parameters.regularization = 1.2f;
     return settings;
