@@ -114,6 +114,7 @@ apsl::Parameters parameters_from(const apsl_parameters& p) {
     return {.time_step = p.time_step,
             .regularization = p.regularization,
             .sub_steps = p.sub_steps,
+            .most_sub_steps = p.most_sub_steps,
             .target_area_change = p.target_area_change,
             .tolerance = p.tolerance,
             .max_iterations = p.max_iterations,
@@ -212,6 +213,7 @@ apsl_parameters apsl_default_parameters(void) {
             static_cast<int32_t>(p.stepping),
             p.enabled,
             p.stretch_ceiling,
+            p.most_sub_steps,
             {}};
 }
 

@@ -26,6 +26,7 @@ apslk_parameters device_parameters(const ResolvedParameters& p) {
             .enabled = on,
             .raises_masses = p.raises_masses,
             .stretch_ceiling = p.stretch_ceiling,
+            .most_sub_steps = on ? p.most_sub_steps : 0,
             .padding = {}};
 }
 

@@ -34,9 +34,9 @@ double least_regularization(const CallBudget& budget, int sub_step) {
 
 void CallBudget::add(const ResolvedParameters& p) {
     const bool is_first = max_iterations == 0;
-    one_schedule = is_first || (one_schedule && sub_steps == p.sub_steps && first_alpha == p.first_alpha &&
+    one_schedule = is_first || (one_schedule && sub_steps == p.most_sub_steps && first_alpha == p.first_alpha &&
                                 regularization == p.regularization);
-    sub_steps = std::max(sub_steps, p.sub_steps);
+    sub_steps = std::max(sub_steps, p.most_sub_steps);
     max_iterations = std::max(max_iterations, p.max_iterations);
     takes_small_steps = takes_small_steps || p.small_steps > 0;
     first_alpha = std::min(first_alpha, p.first_alpha);

@@ -28,6 +28,12 @@
 #define APSLK_EXCESS_TAKEN 0.6f
 // Of |∇C|²: what a row demands beyond its triangle's area row is noise below.
 #define APSLK_LEAST_ROW_SHARE 1e-6f
+// Sub-steps that follow the need (Parameters::most_sub_steps). The excess that a whole step may make for each of them,
+#define APSLK_EXCESS_A_SUB_STEP 0.23f
+// the ratio of the greatest effective mass to the one given that they aim at: K h²/m grows with it,
+#define APSLK_AIMED_MASS_RATIO 8.0f
+// and what a call keeps of the number that the one before asked for.
+#define APSLK_ASKED_KEPT 0.8f
 // What stands at the start of the step is led back over the first of this number of parts of it.
 #define APSLK_PARTS_OF_LEAD 3
 // Added mass of a vertex, in stiffnesses of the tension around it.

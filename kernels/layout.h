@@ -52,7 +52,8 @@ typedef struct {
     apslk_int enabled;             // 0: the cloth is left alone in this call
     apslk_int raises_masses;       // 0: every vertex weighs what was given
     float stretch_ceiling;         // 0: none
-    apslk_int padding[4];
+    apslk_int most_sub_steps;      // at least sub_steps: with a stretch ceiling the device may raise them to it
+    apslk_int padding[3];
 } apslk_parameters;
 
 // Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.
@@ -106,6 +107,7 @@ typedef struct {
     float step[2];                   // CG step length, of even and of odd iterations
     apslk_int solve_iterations;      // done in the present solve; at 0 there is no pressure to read
     float adaptive_factor;           // ≥ 1, multiplies α − 1; outlives the call
+    float asked_sub_steps;           // by the tension of the calls before, for Parameters::most_sub_steps
     float initial_capped_rms;        // RMS area change at x̃ + Δt ṽ, each triangle's counted as at most 1
     float greatest_mass;             // of what a vertex may effectively weigh, kg
     float extent;                    // greatest |coordinate|, m; kept by filter_in_one_group alone

@@ -16,6 +16,21 @@ APSLK_INLINE int small_step_count(apslk_parameters parameters) {
     return APSLK_POSITIONS_ONLY ? 0 : parameters.small_steps;
 }
 
+// The sub-steps that a whole step with this greatest excess of stretch asks for, or `asked` by the calls before; at
+// least those given.
+APSLK_INLINE int followed_sub_steps(float excess, float asked, apslk_parameters parameters) {
+    const float wanted = ceil(fmax(excess / APSLK_EXCESS_A_SUB_STEP, asked));
+    return wanted < (float)parameters.most_sub_steps ? max((int)wanted, parameters.sub_steps)
+                                                     : parameters.most_sub_steps;
+}
+
+// What a call of this number of sub-steps, the last with this greatest effective mass over the one given, asks of the
+// next. `asked`: of itself.
+APSLK_INLINE float next_asked_sub_steps(float asked, int sub_steps, float mass_ratio) {
+    const float by_tension = (float)sub_steps * sqrt((mass_ratio - 1.0f) / (APSLK_AIMED_MASS_RATIO - 1.0f));
+    return fmax(APSLK_ASKED_KEPT * asked, by_tension);
+}
+
 // The share of the start's area error, and of its excess of stretch, that stays for now.
 APSLK_INLINE float start_error_left(int sub_step, int small_steps) {
     const int planned = small_steps - (APSLK_LIMITS_STRETCH ? APSLK_PARTS_OF_LEAD : 1) * (sub_step + 1);

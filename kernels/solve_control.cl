@@ -5,6 +5,7 @@
 #include "layout.h"
 #include "limits_stretch.h"
 #include "offender.h"
+#include "small_steps.h"
 #include "work_group.h"
 
 // Area change over all triangles from the groups' partial results.
@@ -23,9 +24,9 @@ APSLK_INLINE apslk_area_change area_change(__global float* partials, uint groups
     return change;
 }
 
-// Before small steps: the area change that the whole step would have, whether there is anything to do about it, and the
-// greatest effective mass.
-APSLK_KERNEL void judge_whole_step(__global const apslk_parameters* parameters, __global apslk_solve_state* states,
+// Before small steps: the area change that the whole step would have, whether there is anything to do about it, the
+// greatest effective mass, and with a stretch ceiling the number of sub-steps.
+APSLK_KERNEL void judge_whole_step(__global apslk_parameters* parameters, __global apslk_solve_state* states,
                                    __global apslk_stats* stats, __global float* partials, uint groups) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
@@ -38,6 +39,12 @@ APSLK_KERNEL void judge_whole_step(__global const apslk_parameters* parameters, 
     store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     if (not_finite > 0.0f) stats[c].status = APSLK_STATUS_DIVERGED;
     if (not_finite > 0.0f || judged_max(change) <= parameters[c].target_area_change) states[c].stopped = 1;
+#if APSLK_LIMITS_STRETCH
+    const int more =
+        followed_sub_steps(change.max_excess, states[c].asked_sub_steps, parameters[c]) - parameters[c].sub_steps;
+    parameters[c].sub_steps += more;
+    parameters[c].small_steps += more;
+#endif
 }
 
 // Algorithm 1, line 2: a sub-step is done unless the areas are at the target or something is not finite.
@@ -101,5 +108,7 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_so
     stats[c].greatest_mass_ratio = mass_ratio;
 #if APSLK_LIMITS_STRETCH
     stats[c].stretch_rows = none ? 0u : (uint)stretch_rows;
+    if (!diverged)
+        states[c].asked_sub_steps = next_asked_sub_steps(states[c].asked_sub_steps, stats[c].sub_steps, mass_ratio);
 #endif
 }

@@ -62,6 +62,10 @@ inline constexpr std::tuple parameter_fields{
     Field{"regularization", &Parameters::regularization, at_least_one, "",
           "α, multiplies the diagonal of G (Section 4). Not read where each triangle has its own.", true, true},
     Field{"sub_steps", &Parameters::sub_steps, any_whole, "", "Solves a call, at most."},
+    Field{
+        "most_sub_steps", &Parameters::most_sub_steps, any_whole, "",
+        "With a stretch ceiling the device takes from sub_steps to this number of small steps, as stretch and tension "
+        "ask for. 0: twice sub_steps where steps are small and α is the same in all, sub_steps elsewhere."},
     Field{"target_area_change", &Parameters::target_area_change, Bounds{.least = 0.0}, "",
           "No further sub-step once every |A − A⁰| / A⁰ is at or below it."},
     Field{"tolerance", &Parameters::tolerance, Bounds{.least = 0.0, .greatest = 1.0, .greatest_excluded = true}, "",

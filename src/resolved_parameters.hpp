@@ -7,6 +7,8 @@
 #include <apsl/parameters.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace apsl {
 
@@ -21,6 +23,15 @@ struct ResolvedParameters : Parameters {
     float solve_tolerance = 0.0f;  ///< ‖r‖ / ‖b‖ at which CG stops
     float first_alpha = 1.0f;      ///< α of the first sub-step; `regularization` is that of the last
 
+    /// Takes as many sub-steps as a whole step with this greatest excess of stretch asks for, or the calls before.
+    void follow(double excess, float asked) {
+        const double wanted = std::ceil(std::max(excess / APSLK_EXCESS_A_SUB_STEP, static_cast<double>(asked)));
+        const int more =
+            (wanted < most_sub_steps ? std::max(static_cast<int>(wanted), sub_steps) : most_sub_steps) - sub_steps;
+        sub_steps += more;
+        small_steps += more;
+    }
+
     /// `given`: valid. Not explicit: wherever parameters are at hand, these are.
     ResolvedParameters(const Parameters& given, const Options& options = {}) : Parameters(given) {
         // Below 20 sub-steps the parts are long, so that solves must be tighter than usual: automatic leaves the step
@@ -32,6 +43,11 @@ struct ResolvedParameters : Parameters {
         raises_masses = small_steps > 0 && (options.limits_stretch || sub_steps >= least_automatic_small_steps);
         solve_tolerance = small_steps > 0 ? std::min(3.0f * tolerance, 0.9f) : tolerance;
         first_alpha = first_regularization > 0.0f && sub_steps > 1 ? first_regularization : regularization;
+        const bool follows = options.limits_stretch && small_steps > 0 && first_regularization == 0.0f;
+        if (most_sub_steps == 0)
+            most_sub_steps = follows
+                                 ? static_cast<int>(std::min(2.0 * sub_steps, double{std::numeric_limits<int>::max()}))
+                                 : sub_steps;
     }
 };
 

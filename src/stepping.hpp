@@ -3,6 +3,9 @@
 
 #include "../kernels/constants.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace apsl {
 
 /// The fewest sub-steps for which Stepping::automatic takes small steps.
@@ -16,6 +19,14 @@ inline constexpr float greatest_growth = APSLK_GREATEST_GROWTH;
 inline float start_error_left(int sub_step, int parts, bool limits_stretch = false) {
     const int planned = parts - (limits_stretch ? APSLK_PARTS_OF_LEAD : 1) * (sub_step + 1);
     return planned > 0 ? static_cast<float>(planned) / static_cast<float>(parts) : 0.0f;
+}
+
+/// What a call of this number of sub-steps, the last with this greatest effective mass over the one given, asks of the
+/// next. `asked`: of itself.
+inline float next_asked_sub_steps(float asked, int sub_steps, float mass_ratio) {
+    const float by_tension =
+        static_cast<float>(sub_steps) * std::sqrt((mass_ratio - 1.0f) / (APSLK_AIMED_MASS_RATIO - 1.0f));
+    return std::max(APSLK_ASKED_KEPT * asked, by_tension);
 }
 
 }  // namespace apsl

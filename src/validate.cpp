@@ -68,6 +68,10 @@ void validate(const Parameters& parameters) {
     if (parameters.first_regularization != 0.0f && !(parameters.regularization > 1.0f))
         invalid("regularization is " + number(parameters.regularization) +
                 ", expected a number > 1 where first_regularization is given");
+    if (parameters.most_sub_steps != 0 && parameters.most_sub_steps < parameters.sub_steps)
+        invalid("most_sub_steps is " + std::to_string(parameters.most_sub_steps) +
+                ", expected 0 (automatic) or a whole number >= sub_steps, which is " +
+                std::to_string(parameters.sub_steps));
 }
 
 void validate(const Options& options) {
@@ -101,6 +105,18 @@ void validate(const Options& options, const Parameters& parameters) {
     validate(parameters);
     if (options.positions_only && parameters.stepping == Stepping::small_steps)
         invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
+    if (parameters.most_sub_steps > parameters.sub_steps) {
+        const auto needs = [&](bool held, const char* what) {
+            if (!held)
+                invalid("most_sub_steps is " + std::to_string(parameters.most_sub_steps) +
+                        ", more than sub_steps, which needs " + what);
+        };
+        needs(options.limits_stretch, "Options::limits_stretch on");
+        needs(!options.positions_only, "velocities: Options::positions_only is on");
+        needs(parameters.stepping != Stepping::whole_step, "small steps: stepping is whole_step");
+        needs(parameters.sub_steps >= 2, "sub_steps >= 2");
+        needs(parameters.first_regularization == 0.0f, "first_regularization 0");
+    }
     if (parameters.stretch_ceiling > 0.0f && !options.limits_stretch)
         invalid("stretch_ceiling is " + number(parameters.stretch_ceiling) +
                 ", expected 0: Options::limits_stretch is off");

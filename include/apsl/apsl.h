@@ -127,7 +127,8 @@ typedef struct apsl_parameters {
     int32_t stepping;           /**< apsl_stepping */
     int32_t enabled;            /**< 0: the cloth is left alone in this call; 1 by default */
     float stretch_ceiling;      /**< 0, or >= 1.01: the greatest principal stretch, with limits_stretch */
-    uint32_t reserved[7];       /**< zeros; room for fields to come, so that the size stays */
+    int32_t most_sub_steps;     /**< >= sub_steps: the device takes more where stretch asks; 0: automatic */
+    uint32_t reserved[6];       /**< zeros; room for fields to come, so that the size stays */
 } apsl_parameters;
 
 /** apsl::BufferView: 32-bit floats in a buffer of the caller's. */

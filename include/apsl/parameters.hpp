@@ -28,6 +28,12 @@ struct Parameters {
     float time_step = 1.0f / 60.0f;  ///< s, > 0; Δt of Algorithm 1
     float regularization = 1.05f;    ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
     std::int32_t sub_steps = 30;     ///< ≥ 0; the fixed count of Algorithm 1
+    /// ≥ `sub_steps`; 0: automatic. With Options::limits_stretch the device takes as many small steps, from `sub_steps`
+    /// to this, as the stretch that the whole step would make and the tension of the calls before ask for
+    /// (docs/formulation.md, Stretch ceiling); all of them are queued. More than `sub_steps` need sub_steps ≥ 2,
+    /// velocities, a stepping other than whole_step, and first_regularization = 0. Automatic is twice `sub_steps` where
+    /// these hold, `sub_steps` elsewhere.
+    std::int32_t most_sub_steps = 0;
     /// |A − A⁰| / A⁰ ≥ 0; no further sub-step once every triangle is at or below it. With small steps looked at before
     /// the first and before the last.
     float target_area_change = 0.0f;

@@ -49,7 +49,7 @@ void check(const Topology& topology, const Buffers<Real>& buffers, const Options
                options.stretch_ceiling_per_triangle ? topology.triangle_count() : 0);
     check_values("rest_shapes", "number", buffers.rest_shapes, "a finite number (1/m)", [](Real) { return true; });
     check_values("stretch_ceilings", "triangle", buffers.stretch_ceilings, "0 or a finite number >= 1.01",
-                 [](Real ceiling) { return ceiling == Real(0) || ceiling >= Real(least_stretch_ceiling); });
+                 [](Real ceiling) { return ceiling == Real(0) || ceiling >= Real(APSLK_LEAST_STRETCH_CEILING); });
 }
 
 template <class Real>
@@ -92,6 +92,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     TriangleVector<Real> lambda;
     std::vector<Real> effective_regularization;  // α, [T]
     Real adaptive_factor = Real(1);              // outlives the call
+    float asked_sub_steps = 0.0f;                // by the tension of the calls before
     std::vector<TriangleVector<Real>> kept;      // √(α D) λ of the sub-steps of the call before
     ConjugateGradientScratch<Real> scratch;
     std::vector<Real> direction_bounds;  // s, [V]
@@ -357,9 +358,8 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     /// Leaves the outcome in `stats`; what is not finite ends it as diverged, with the area change of the velocities as
     /// given.
-    void filter(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
+    void filter(const Buffers<Real>& buffers, ResolvedParameters parameters) {
         const Real time_step = parameters.time_step;
-        const int parts = parameters.small_steps;
         stats = {};
         stats.status = Status::diverged;
         stats.greatest_mass_ratio = 1.0f;
@@ -374,6 +374,8 @@ struct BasicStrainLimiter<Real>::Implementation {
         stats.initial_max_stretch_excess = stats.max_stretch_excess;
         stats.initial_rms_stretch_excess = stats.rms_stretch_excess;
 
+        parameters.follow(initial.stretches.max, asked_sub_steps);
+        const int parts = parameters.small_steps;
         Standing change = initial;
         bool all_converged = true;
         const auto target = static_cast<double>(parameters.target_area_change);
@@ -402,7 +404,10 @@ struct BasicStrainLimiter<Real>::Implementation {
         if (any && !filtered_velocities(buffers, time_step)) return;
         stats.status = all_converged ? Status::ok : Status::not_converged;
         count_raised(buffers.inverse_masses);
-        if (options.limits_stretch) stats.stretch_rows = stretches.rows_at_work();
+        if (options.limits_stretch) {
+            stats.stretch_rows = stretches.rows_at_work();
+            asked_sub_steps = next_asked_sub_steps(asked_sub_steps, stats.sub_steps, stats.greatest_mass_ratio);
+        }
         if (!is_worse(initial, change, buffers.rest_areas) && any)
             std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
     }

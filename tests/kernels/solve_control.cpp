@@ -127,6 +127,46 @@ TEST_CASE("judge_whole_step: what a whole step would do, and a stop at the targe
     CHECK(begun(0.3f, 0.0f).first.initial_max_area_change == 0.0f);
 }
 
+TEST_CASE("judge_whole_step: with a stretch ceiling sub-steps follow the excess, and what was asked for",
+          "[judge_whole_step][stretch_ceiling]") {
+    const auto taken = [](double excess, float asked) {
+        Reported reported({.sub_steps = 4, .most_sub_steps = 9, .stepping = Stepping::small_steps});
+        reported.arrays.write_partials(0, APSLK_PARTIAL_MAX_EXCESS, {0.0, excess, 0.0, 0.0, 0.0});
+        for (const int kind : {APSLK_PARTIAL_MAX_STRETCH, APSLK_PARTIAL_SQUARED_EXCESS})
+            reported.arrays.write_partials(0, kind, std::vector<double>(groups, 0.0));
+        reported.arrays.edit_states([&](apslk_solve_state& state) { state.asked_sub_steps = asked; });
+        launch::judge_whole_step(reported.arrays, {.chebyshev = true, .limits_stretch = true});
+        const apslk_parameters parameters = reported.arrays.parameters.read()[0];
+        CHECK(parameters.small_steps == parameters.sub_steps - 1);
+        return parameters.sub_steps;
+    };
+    CHECK(taken(0.0, 0.0f) == 4);
+    CHECK(taken(1.5, 0.0f) == 7);  // 1.5 / 0.23 = 6.5
+    CHECK(taken(1.5, 7.5f) == 8);
+    CHECK(taken(1e30, 0.0f) == 9);
+}
+
+TEST_CASE("end_call: the tension of a call asks the next for sub-steps", "[end_call][stretch_ceiling]") {
+    const auto asked = [](int sub_steps, double mass_ratio, bool finite) {
+        Reported reported({.sub_steps = 30});
+        for (const int kind : {APSLK_PARTIAL_MAX_STRETCH, APSLK_PARTIAL_MAX_EXCESS, APSLK_PARTIAL_SQUARED_EXCESS,
+                               APSLK_PARTIAL_STRETCH_ROWS, APSLK_PARTIAL_RAISED, APSLK_PARTIAL_EXTENT})
+            reported.arrays.write_partials(0, kind, std::vector<double>(groups, 0.0));
+        reported.arrays.write_partials(0, APSLK_PARTIAL_MASS_RATIO, {1.0, mass_ratio, 1.0, 1.0, 1.0});
+        if (!finite) reported.arrays.write_partials(0, APSLK_PARTIAL_NOT_FINITE, {1.0, 0.0, 0.0, 0.0, 0.0});
+        std::vector<apslk_stats> stats = reported.arrays.stats.read();
+        stats[0].sub_steps = sub_steps;
+        reported.arrays.stats.write(stats);
+        reported.arrays.edit_states([&](apslk_solve_state& state) { state.asked_sub_steps = 50.0f; });
+        launch::end_call(reported.arrays, {.chebyshev = true, .limits_stretch = true});
+        return reported.state().asked_sub_steps;
+    };
+    CHECK(asked(30, 29.0, true) == 60.0f);
+    CHECK(asked(30, 1.0, true) == 40.0f);
+    CHECK(asked(0, 29.0, true) == 40.0f);
+    CHECK(asked(30, 29.0, false) == 50.0f);
+}
+
 TEST_CASE("begin_solve: in small steps only its end is held against the target", "[begin_solve]") {
     for (const int sub_step : {0, 2, 3}) {
         CAPTURE(sub_step);

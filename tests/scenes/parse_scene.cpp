@@ -200,7 +200,8 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "steps_per_frame, frames, integrator, strain_limiting, colliders"},
         {R"("strain_limiting": {"alpha": 2})",
          "strain_limiting.alpha: unknown key, expected one of matrix, apply, execution, warm_start_sub_steps, "
-         "solver, bound_interval, regularization, sub_steps, target_area_change, tolerance, max_iterations, "
+         "solver, bound_interval, regularization, sub_steps, most_sub_steps, target_area_change, tolerance, "
+         "max_iterations, "
          "adaptive_threshold, first_regularization, stretch_ceiling, stepping"},
         {R"("strain_limiting": {"stretch_ceiling": 1})",
          "strain_limiting: stretch_ceiling is 1, expected 0 (areas alone) or a finite number >= 1.01"},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <apsl/error.hpp>
+#include <apsl/options.hpp>
 #include <apsl/parameters.hpp>
 
 #include <catch2/catch.hpp>
@@ -49,6 +50,31 @@ TEST_CASE("a schedule of alpha has no end at 1") {
                       "regularization is 1, expected a number > 1 where first_regularization is given");
     parameters.regularization = 1.01f;
     CHECK_NOTHROW(validate(parameters));
+}
+
+TEST_CASE("more sub-steps where stretch asks for them: what that needs") {
+    const auto message = [](const Parameters& parameters, Options options = {.limits_stretch = true}) {
+        try {
+            validate(options, parameters);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    CHECK(message({.sub_steps = 30, .most_sub_steps = 60}) == "no error");
+    CHECK(message({.sub_steps = 30, .most_sub_steps = 29}) ==
+          "most_sub_steps is 29, expected 0 (automatic) or a whole number >= sub_steps, which is 30");
+    CHECK(message({.most_sub_steps = -1}) == "most_sub_steps is -1, expected a whole number >= 0");
+    const std::string more = "most_sub_steps is 60, more than sub_steps, which needs ";
+    CHECK(message({.most_sub_steps = 60}, {}) == more + "Options::limits_stretch on");
+    CHECK(message({.most_sub_steps = 60}, {.positions_only = true, .limits_stretch = true}) ==
+          more + "velocities: Options::positions_only is on");
+    CHECK(message({.most_sub_steps = 60, .stepping = Stepping::whole_step}) ==
+          more + "small steps: stepping is whole_step");
+    CHECK(message({.sub_steps = 1, .most_sub_steps = 60}) == more + "sub_steps >= 2");
+    CHECK(message({.most_sub_steps = 60, .first_regularization = 1.2f}) == more + "first_regularization 0");
+    CHECK(message({.most_sub_steps = 30, .first_regularization = 1.2f}) == "no error");
+    CHECK(message({.most_sub_steps = 30}, {}) == "no error");
 }
 
 TEST_CASE("numbers that are not finite are refused in every field") {

@@ -31,6 +31,7 @@ class Parameters(TypedDict, total=False):
     time_step: float  # s, > 0
     regularization: Union[float, npt.ArrayLike]  # α ≥ 1; an array [T] with regularization_per_triangle
     sub_steps: int  # ≥ 0
+    most_sub_steps: int  # ≥ sub_steps: more are taken where stretch asks for them; 0: automatic
     target_area_change: float  # ≥ 0, no further sub-step once every triangle is at or below it
     tolerance: float  # in [0, 1), of a solve's residual
     max_iterations: int  # ≥ 1, CG iterations of a solve

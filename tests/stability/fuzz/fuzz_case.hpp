@@ -3,6 +3,8 @@
 
 #include "support/device_cloth.hpp"
 
+#include "resolved_parameters.hpp"
+
 #include <apsl/parameters.hpp>
 #include <apsl/strain_limiter.hpp>
 
@@ -40,7 +42,9 @@ struct FuzzCase {
 inline bool remembers(const FuzzCase& c) {
     bool result = c.options.warm_start_sub_steps > 0;
     for (const FuzzCall& call : c.calls)
-        for (const Parameters& parameters : call.parameters) result = result || parameters.adaptive_threshold > 0;
+        for (const Parameters& parameters : call.parameters)
+            result = result || parameters.adaptive_threshold > 0 ||
+                     ResolvedParameters(parameters, c.options).most_sub_steps > parameters.sub_steps;
     return result;
 }
 

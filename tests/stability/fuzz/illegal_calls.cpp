@@ -16,7 +16,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 Parameters illegal_parameters(Random& random) {
     Parameters p;
-    switch (random.below(9)) {
+    switch (random.below(10)) {
         case 0:
             p.time_step = random.one_of({0.0f, -1.0f, infinity, not_a_number, -1e-45f});
             break;
@@ -40,6 +40,9 @@ Parameters illegal_parameters(Random& random) {
             break;
         case 7:
             p.stretch_ceiling = random.one_of({-1.0f, 0.5f, 1.0f, 1.009f, infinity, not_a_number});
+            break;
+        case 8:
+            p.most_sub_steps = random.one_of({-1, 1, 29});
             break;
         default:
             p.first_regularization = random.one_of({1.0f, 0.5f, -2.0f, infinity, not_a_number});

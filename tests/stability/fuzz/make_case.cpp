@@ -49,7 +49,7 @@ Options random_options(std::uint64_t number) {
     return options;
 }
 
-Parameters random_parameters(Random& random, bool may_adapt, bool limits_stretch) {
+Parameters random_parameters(Random& random, bool may_adapt, bool limits_stretch, bool may_follow) {
     Parameters p;
     if (limits_stretch) p.stretch_ceiling = random.one_of({0.0f, 1.01f, 1.1f, 1.1f, 1.1f, 2.0f, 1e6f});
     p.time_step = random.one_of({1.0f / 60.0f, 1.0f / 60.0f, 1e-3f, 0.1f, 1e-6f});
@@ -62,6 +62,9 @@ Parameters random_parameters(Random& random, bool may_adapt, bool limits_stretch
         p.first_regularization = random.one_of({1.0001f, 1.05f, 2.0f, 1e6f});
     p.stepping = random.one_of({Stepping::automatic, Stepping::whole_step, Stepping::small_steps});
     if (p.sub_steps < 2) p.stepping = Stepping::whole_step;
+    if (limits_stretch) p.most_sub_steps = p.sub_steps;
+    if (may_follow && p.stepping != Stepping::whole_step && p.first_regularization == 0.0f && random.chance(0.7))
+        p.most_sub_steps = random.one_of({0, p.sub_steps + 1, p.sub_steps + 7, p.sub_steps + 40});
     p.enabled = !random.chance(0.05);
     if (may_adapt) p.adaptive_threshold = random.one_of({1, 4, 20});
     return p;
@@ -105,10 +108,11 @@ FuzzCase CaseMaker::make(std::uint64_t number) {
     c.in_single_precision = random.chance(0.3);
     c.twice = random.chance(0.4);
     const bool may_adapt = random.chance(0.015) && resolved_solver(options_) == Solver::conjugate_gradient;
+    const bool may_follow = options_.limits_stretch && random.chance(0.05);
     for (std::uint32_t calls = random.one_of({1u, 1u, 1u, 2u, 3u}); calls > 0; --calls) {
         FuzzCall call;
         for (std::size_t n = 0; n < c.cloths.size(); ++n)
-            call.parameters.push_back(random_parameters(random, may_adapt, options_.limits_stretch));
+            call.parameters.push_back(random_parameters(random, may_adapt, options_.limits_stretch, may_follow));
         call.carries_on = random.chance(0.5);
         if (random.chance(0.1)) call.bad = random_bad_number(random, c);
         c.calls.push_back(call);

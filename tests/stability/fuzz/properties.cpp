@@ -95,7 +95,8 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
             {{"greatest area change before", facts.max_before}});
     if (diverged) return {};
     const int most = parameters.max_iterations + (options.warm_start_sub_steps > 0 ? 1 : 0);
-    if (stats.sub_steps < 0 || stats.sub_steps > parameters.sub_steps || stats.iterations < 0 ||
+    const int most_sub_steps = ResolvedParameters(parameters, options).most_sub_steps;
+    if (stats.sub_steps < 0 || stats.sub_steps > most_sub_steps || stats.iterations < 0 ||
         stats.iterations > most * stats.sub_steps)
         return broken("more sub-steps or iterations than allowed",
                       {{"sub-steps", stats.sub_steps}, {"iterations", stats.iterations}});
