@@ -67,6 +67,8 @@ def legal(field):
         return ", ".join(f"`{value}`" for value in field["values"])
     if field["type"] == "bool":
         return "`true`, `false`"
+    if field["type"] == "vector":
+        return f"three numbers {field['unit']}"
     signs = {"least": "≥", "above": ">", "greatest": "≤", "below": "<"}
     limits = " and ".join(f"{signs[key]} {plain(value)}" for key, value in bounds.items() if key in signs)
     return ("0 or " if "zero" in bounds else "") + limits + (f" {field['unit']}" if field["unit"] else "")
@@ -76,6 +78,8 @@ def default(field):
     value = field["default"]
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
+    if isinstance(value, list):
+        return ", ".join(f"{component:.6g}" for component in value)
     return f"`{value}`" if isinstance(value, str) else f"{value:.6g}"
 
 

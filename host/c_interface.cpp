@@ -106,7 +106,8 @@ apsl::Options options_from(const apsl_options* options) {
             .solver = static_cast<apsl::Solver>(o.solver),
             .bound_interval = o.bound_interval,
             .limits_stretch = o.limits_stretch != 0,
-            .stretch_ceiling_per_triangle = o.stretch_ceiling_per_triangle != 0};
+            .stretch_ceiling_per_triangle = o.stretch_ceiling_per_triangle != 0,
+            .integrates = o.integrates != 0};
 }
 
 apsl::Parameters parameters_from(const apsl_parameters& p) {
@@ -121,6 +122,8 @@ apsl::Parameters parameters_from(const apsl_parameters& p) {
             .adaptive_threshold = p.adaptive_threshold,
             .first_regularization = p.first_regularization,
             .stretch_ceiling = p.stretch_ceiling,
+            .acceleration = {p.acceleration[0], p.acceleration[1], p.acceleration[2]},
+            .damping = p.damping,
             .stepping = static_cast<apsl::Stepping>(p.stepping),
             .enabled = p.enabled != 0};
 }
@@ -197,6 +200,7 @@ apsl_options apsl_default_options(void) {
             o.bound_interval,
             o.limits_stretch,
             o.stretch_ceiling_per_triangle,
+            o.integrates,
             {}};
 }
 
@@ -214,6 +218,8 @@ apsl_parameters apsl_default_parameters(void) {
             p.enabled,
             p.stretch_ceiling,
             p.most_sub_steps,
+            {p.acceleration[0], p.acceleration[1], p.acceleration[2]},
+            p.damping,
             {}};
 }
 

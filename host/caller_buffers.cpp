@@ -44,7 +44,7 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
         check_view(view, floats, access, context, name);
     };
     check(buffers.positions, position_floats(options, counts),
-          options.positions_only ? Access::read_and_write : Access::read, "buffers.positions");
+          options.positions_only || options.integrates ? Access::read_and_write : Access::read, "buffers.positions");
     if (!options.positions_only) {
         check(buffers.velocities,
               vector_extent(counts.vertices, options.velocity_stride, options.velocity_component_stride),

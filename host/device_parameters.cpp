@@ -27,6 +27,8 @@ apslk_parameters device_parameters(const ResolvedParameters& p) {
             .raises_masses = p.raises_masses,
             .stretch_ceiling = p.stretch_ceiling,
             .most_sub_steps = on ? p.most_sub_steps : 0,
+            .acceleration = {p.acceleration[0], p.acceleration[1], p.acceleration[2]},
+            .damping = p.damping,
             .padding = {}};
 }
 

@@ -167,6 +167,12 @@ const Kernel& update_velocities(const Kernel& kernel, const Arrays& a, const Buf
                          caller.positions, corrected(caller));
 }
 
+template <class Arrays>
+const Kernel& store_step(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.moved, a.motion,
+                         caller.positions, caller.velocities);
+}
+
 /// `pressure_stride`: from one kept pressure to the next, triangles.
 template <class Arrays, class Array>
 const Kernel& filter_in_one_group(const Kernel& kernel, const Arrays& a, const Array& pressure, const Buffers& caller,

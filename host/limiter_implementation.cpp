@@ -217,7 +217,9 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
             queue_conjugate_gradient(commands, budget, sub_step);
     launch(commands, arguments::measure_area_change(kernels.measure_area_change, arrays, arrays.pressures.front()));
     launch_one_group(commands, arguments::end_call(kernels.end_call, arrays));
-    if (budget.sub_steps > 0)
+    if (options.integrates)
+        launch(commands, arguments::store_step(kernels.store_step, arrays, buffers));
+    else if (budget.sub_steps > 0)
         launch(commands, arguments::update_velocities(kernels.update_velocities, arrays, buffers));
 }
 

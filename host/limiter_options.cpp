@@ -51,7 +51,8 @@ Execution resolve_execution(const Options& options, const DeviceFacts& facts, st
     switch (options.execution) {
         case Execution::automatic:
             return matrix_free_consistent(options) && options.solver == Solver::conjugate_gradient &&
-                           one_group_fits(options, facts) && largest <= one_group_triangles(facts)
+                           !options.integrates && one_group_fits(options, facts) &&
+                           largest <= one_group_triangles(facts)
                        ? Execution::one_group
                        : Execution::many_groups;
         case Execution::many_groups:
@@ -103,7 +104,8 @@ std::vector<std::string_view> kernel_files(const Options& options) {
         return {"set_parameters.cl", "rest_areas.cl", "filter_in_one_group.cl"};
     std::vector<std::string_view> files{"set_parameters.cl",       "predict_positions.cl",   "order_triangle_values.cl",
                                         "assemble_gradients.cl",   "measure_area_change.cl", "solve_control.cl",
-                                        "gather_displacements.cl", "update_velocities.cl",   "rest_areas.cl"};
+                                        "gather_displacements.cl", "rest_areas.cl"};
+    files.push_back(options.integrates ? "store_step.cl" : "update_velocities.cl");
     if (!options.positions_only) files.push_back("start_small_steps.cl");
     if (options.solver == Solver::chebyshev) {
         files.insert(files.end(), {"bound_matrix.cl", "chebyshev_step.cl"});
@@ -136,6 +138,7 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
            define("APSLK_VELOCITY_COMPONENT_STRIDE", options.velocity_component_stride) +
            define("APSLK_INVERSE_MASS_STRIDE", options.inverse_mass_stride) +
            define("APSLK_POSITIONS_ONLY", options.positions_only ? 1 : 0) +
+           define("APSLK_INTEGRATES", options.integrates ? 1 : 0) +
            define("APSLK_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
            define("APSLK_PATCH_VERTICES", patch_vertices) +
            define("APSLK_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +

@@ -34,9 +34,10 @@ APSLK_KERNEL void filter_in_one_group(
     int sub_steps = 0;
     bool started = false;
 
-    const apslk_vertex_sums vertex_sums = predict_vertices(
-        cloths[c], parameters[c].enabled, parameters[c].time_step, small_step_count(parameters[c]) > 0, vertex_order,
-        moved, motion, positions + position_offset, velocities + velocity_offset, inverse_masses + inverse_mass_offset);
+    const apslk_vertex_sums vertex_sums =
+        predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, free_step(parameters + c),
+                         small_step_count(parameters[c]) > 0, vertex_order, moved, motion, positions + position_offset,
+                         velocities + velocity_offset, inverse_masses + inverse_mass_offset);
     const float bad_vertices = group_sum(vertex_sums.bad, scratch);
     const float log_masses = group_sum(vertex_sums.log_masses, scratch);
     const float extent = group_max(vertex_sums.extent, scratch);
@@ -90,8 +91,9 @@ APSLK_KERNEL void filter_in_one_group(
         started = true;
         // Not under a condition: where a loop follows a conditional barrier, pocl 3.1 lets the first work-item decide
         // for all whether to enter it.
-        begin_small_steps(cloths[c], starting, parameters[c].time_step, small_step_count(parameters[c]), vertex_order,
-                          moved, motion, total_correction, velocities + velocity_offset);
+        begin_small_steps(cloths[c], starting, parameters[c].time_step, free_part(parameters + c),
+                          small_step_count(parameters[c]), vertex_order, moved, motion, total_correction,
+                          velocities + velocity_offset);
         if (going_on && !starting) {
             if (APSLK_WARM_START_SUB_STEPS > 0) {
                 copy_pressures(cloths[c], pressure, pressure + kept_place(sub_steps, pressure_stride));
@@ -110,7 +112,8 @@ APSLK_KERNEL void filter_in_one_group(
                                                  solved,
                                                  raises_masses && sub_steps + 1 < parameters[c].sub_steps,
                                                  states[c].greatest_mass,
-                                                 raises_masses ? APSLK_HELD_TENSION : INFINITY};
+                                                 raises_masses ? APSLK_HELD_TENSION : INFINITY,
+                                                 free_part(parameters + c)};
             if (in_small_steps)  // uniform
                 advance_vertices(cloths[c], true, small_step, corner_offsets, corners, gradients, pressure, moved,
                                  motion, total_correction);

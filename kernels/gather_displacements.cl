@@ -29,12 +29,15 @@ APSLK_KERNEL void gather_displacements(__global const apslk_cloth* cloths, __glo
     displace_vertices(cloths[c], !in_small_steps && !states[c].stopped && solved, corner_offsets, corners, gradients,
                       pressure, moved);
     const bool raises_masses = parameters[c].raises_masses != 0;
+    apslk_free_part free = free_part(parameters + c);
+    free.gain *= parameters[c].time_step;
     const apslk_small_step small_step = {sub_step,
                                          small_step_count(parameters[c]),
                                          solved,
                                          raises_masses && sub_step + 1 < parameters[c].sub_steps,
                                          states[c].greatest_mass,
-                                         raises_masses ? APSLK_HELD_TENSION : INFINITY};
+                                         raises_masses ? APSLK_HELD_TENSION : INFINITY,
+                                         free};
     advance_vertices(cloths[c], in_small_steps && !states[c].stopped, small_step, corner_offsets, corners, gradients,
                      pressure, moved, motion, total_correction);
     const float residual = sum_partials(partials, APSLK_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);

@@ -53,11 +53,13 @@ typedef struct {
     apslk_int raises_masses;       // 0: every vertex weighs what was given
     float stretch_ceiling;         // 0: none
     apslk_int most_sub_steps;      // at least sub_steps: with a stretch ceiling the device may raise them to it
-    apslk_int padding[3];
+    float acceleration[3];         // m/s²
+    float damping;                 // 1/s
+    apslk_int padding[15];         // to a power of two, as a pattern that fills a buffer
 } apslk_parameters;
 
 // Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.
-#define APSLK_PARAMETER_BLOCK 14
+#define APSLK_PARAMETER_BLOCK 7
 typedef struct {
     apslk_parameters entry[APSLK_PARAMETER_BLOCK];
 } apslk_parameter_block;
@@ -100,7 +102,7 @@ typedef struct {
 // Where a cloth's solve stands. Each field is written by one work-group in a launch that does not read it elsewhere.
 typedef struct {
     apslk_int stopped;               // no further sub-step in this call
-    apslk_int discarded;             // the call did nothing, or worse: velocities stay
+    apslk_int discarded;             // the call did nothing, or worse: velocities stay, or are those of no limiter
     apslk_int iterating;             // this CG iteration does its work
     float initial_squared_residual;  // ‖b‖², m⁴
     float scaled_residual[2];        // γ = r̄·r̄ with r̄ = r/√(α diag G), of even and of odd iterations

@@ -14,9 +14,10 @@ APSLK_KERNEL void predict_positions(__global const apslk_cloth* cloths, __global
                                     __global const float* inverse_masses, ulong inverse_mass_offset) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const apslk_vertex_sums sums = predict_vertices(
-        cloths[c], parameters[c].enabled, parameters[c].time_step, small_step_count(parameters[c]) > 0, vertex_order,
-        moved, motion, positions + position_offset, velocities + velocity_offset, inverse_masses + inverse_mass_offset);
+    const apslk_vertex_sums sums =
+        predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, free_step(parameters + c),
+                         small_step_count(parameters[c]) > 0, vertex_order, moved, motion, positions + position_offset,
+                         velocities + velocity_offset, inverse_masses + inverse_mass_offset);
     store_partial(partials, APSLK_PARTIAL_BAD_VERTICES, group_sum(sums.bad, scratch));
     store_partial(partials, APSLK_PARTIAL_LOG_MASSES, group_sum(sums.log_masses, scratch));
     store_partial(partials, APSLK_PARTIAL_MOVABLE, group_sum(sums.movable, scratch));

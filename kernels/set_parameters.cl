@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Parameters that differ from cloth to cloth. They arrive as an argument, which the queue copies when the kernel is
-// queued: nothing of the caller's has to outlive the call. Moves 64 B a cloth.
+// queued: nothing of the caller's has to outlive the call. Moves 128 B a cloth.
 #include "layout.h"
 #include "work_group.h"
 

@@ -11,6 +11,7 @@ APSLK_KERNEL void start_small_steps(__global const apslk_cloth* cloths, __global
                                     __global const float* velocities, ulong velocity_offset) {
     const uint c = (uint)get_group_id(1);
     const int small_steps = small_step_count(parameters[c]);
-    begin_small_steps(cloths[c], small_steps > 0 && !states[c].stopped, parameters[c].time_step, small_steps,
-                      vertex_order, moved, motion, total_correction, velocities + velocity_offset);
+    begin_small_steps(cloths[c], small_steps > 0 && !states[c].stopped, parameters[c].time_step,
+                      free_part(parameters + c), small_steps, vertex_order, moved, motion, total_correction,
+                      velocities + velocity_offset);
 }

@@ -5,6 +5,7 @@
 #define APSLK_VERTEX_MOTION_H
 
 #include "effective_mass.h"
+#include "free_motion.h"
 #include "gradients.h"
 #include "layout.h"
 #include "limits_stretch.h"
@@ -56,16 +57,20 @@ APSLK_INLINE float3 load_velocity(__global const float* velocities, uint vertex)
     return load_vector(velocities + (ulong)vertex * APSLK_VELOCITY_STRIDE, APSLK_VELOCITY_COMPONENT_STRIDE);
 }
 
-// x̃ + Δt ṽ of the caller's vertex. Where there are no velocities, `velocities` is the positions, in and out, and this
-// the position as given, to the bit: one pointer in place of two, which the large kernel has no registers for.
+// x̃ + Δt ṽ of the caller's vertex, ṽ as `free` has it. Where there are no velocities, `velocities` is the positions,
+// in and out, and this the position as given, to the bit: one pointer in place of two, which the large kernel has no
+// registers for.
 APSLK_INLINE float3 end_of_step(__global const float* positions, __global const float* velocities, uint vertex,
-                                float time_step) {
+                                float inverse_mass, float time_step, apslk_free_step free) {
 #if APSLK_POSITIONS_ONLY
     (void)positions;
     (void)time_step;
+    (void)inverse_mass;
+    (void)free;
     return load_position(velocities, vertex);
 #else
-    return predicted_position(load_position(positions, vertex), load_velocity(velocities, vertex), time_step);
+    return predicted_position(load_position(positions, vertex),
+                              mean_of_free_step(free, load_velocity(velocities, vertex), inverse_mass), time_step);
 #endif
 }
 
@@ -83,17 +88,17 @@ typedef struct {
 
 // moved = (x̃ + Δt ṽ, w), and before small steps motion = (x̃, w), in the limiter's order of vertices. Returns this
 // work-item's sums.
-APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, float time_step, bool in_small_steps,
-                                                __global const uint* vertex_order, __global float4* moved,
-                                                __global float4* motion, __global const float* positions,
-                                                __global const float* velocities,
+APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, float time_step, apslk_free_step free,
+                                                bool in_small_steps, __global const uint* vertex_order,
+                                                __global float4* moved, __global float4* motion,
+                                                __global const float* positions, __global const float* velocities,
                                                 __global const float* inverse_masses) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     apslk_vertex_sums sums = {0.0f, 0.0f, 0.0f, 0.0f};
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, i = vertex_order[place];
         const float w = inverse_masses[(ulong)i * APSLK_INVERSE_MASS_STRIDE];
-        const float4 x = (float4)(end_of_step(positions, velocities, i, time_step), w);
+        const float4 x = (float4)(end_of_step(positions, velocities, i, w, time_step, free), w);
         moved[place] = x;
         if (in_small_steps) motion[place] = (float4)(load_position(positions, i), w);
         sums.bad += is_bad_vertex(x) ? 1.0f : 0.0f;
@@ -104,17 +109,18 @@ APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, 
     return sums;
 }
 
-// The first of `small_steps` parts of the step: moved = x̃ + Δt ṽ / small_steps, motion = (Δt ṽ, w), total_correction =
-// 0. The w of `total_correction` is the kept stiffness K, 0 where it never was too much.
-APSLK_INLINE void begin_small_steps(apslk_cloth cloth, bool active, float time_step, int small_steps,
-                                    __global const uint* vertex_order, __global float4* moved, __global float4* motion,
-                                    __global float4* total_correction, __global const float* velocities) {
+// The first of `small_steps` parts of the step, with its `free` part: moved = x̃ + Δt ṽ / small_steps, motion = (Δt ṽ,
+// w), total_correction = 0. The w of `total_correction` is the kept stiffness K, 0 where it never was too much.
+APSLK_INLINE void begin_small_steps(apslk_cloth cloth, bool active, float time_step, apslk_free_part free,
+                                    int small_steps, __global const uint* vertex_order, __global float4* moved,
+                                    __global float4* motion, __global float4* total_correction,
+                                    __global const float* velocities) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     const float part = 1.0f / (float)small_steps;
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v;
-        const float3 step = time_step * load_velocity(velocities, vertex_order[place]);
         const float4 start = motion[place];
+        const float3 step = time_step * after_free_part(free, load_velocity(velocities, vertex_order[place]), start.w);
         moved[place] = (float4)(fma((float3)(part), step, start.xyz), start.w);
         motion[place] = (float4)(step, start.w);
         total_correction[place] = (float4)(0.0f);
@@ -139,10 +145,11 @@ APSLK_INLINE void displace_vertices(apslk_cloth cloth, bool active, __global con
 // One of the small steps. The same for all vertices of a cloth.
 typedef struct {
     int sub_step, small_steps;
-    bool solved;          // there are pressures
-    bool renews_masses;   // from the next sub-step on
-    float greatest_mass;  // kg
-    float held_tension;   // greatest K w' that no mass is raised for; infinite where masses stay as given
+    bool solved;           // there are pressures
+    bool renews_masses;    // from the next sub-step on
+    float greatest_mass;   // kg
+    float held_tension;    // greatest K w' that no mass is raised for; infinite where masses stay as given
+    apslk_free_part free;  // of Δt u, m
 } apslk_small_step;
 
 // x_i += Δx_i, and on to the next part. A displacement in the part before changes the velocity by small_steps · Δx /
@@ -191,10 +198,13 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
 #endif
             if (small_step.solved) {
                 x += change;  // its w is zero
-                step += parts * change;
+                // After the last part only positions are mended.
+                if (!APSLK_INTEGRATES || small_step.sub_step < small_step.small_steps) step += parts * change;
                 total += parts_left * change;
-                motion[i] = (float4)(step.xyz, given);
             }
+            if (APSLK_INTEGRATES && onward > 0.0f)
+                step = (float4)(after_free_part(small_step.free, step.xyz, given), 0.0f);
+            if (APSLK_INTEGRATES || small_step.solved) motion[i] = (float4)(step.xyz, given);
             total_correction[i] = total;
         }
         moved[i] = x + onward * step;
@@ -233,6 +243,28 @@ APSLK_INLINE void store_positions(apslk_cloth cloth, bool active, __global const
         if (x.w > 0.0f && all(isfinite(x)))
             store_vector(x.xyz, positions + (ulong)vertex_order[place] * APSLK_POSITION_STRIDE,
                          APSLK_POSITION_COMPONENT_STRIDE);
+    }
+}
+
+// Where a whole step ends. `limited`: as moved and motion have it; otherwise as `free` has it. A vertex
+// whose end is not finite stays.
+APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited, float time_step, apslk_free_step free,
+                                    __global const uint* vertex_order, __global const float4* moved,
+                                    __global const float4* motion, __global float* positions,
+                                    __global float* velocities) {
+    const apslk_range range = share_of(cloth.vertex_count, active);
+    for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
+        const uint place = cloth.vertex_begin + v, i = vertex_order[place];
+        const float4 end = moved[place], step = motion[place];
+        const float3 before = load_velocity(velocities, i);
+        const bool moves = limited && step.w > 0.0f;
+        const float3 after = moves ? step.xyz * (1.0f / time_step) : after_free_step(free, before, step.w);
+        const float3 x = moves ? end.xyz : end_of_step(positions, velocities, i, step.w, time_step, free);
+        if (!all(isfinite(after)) || !all(isfinite(x))) continue;
+        store_vector(x, positions + (ulong)i * APSLK_POSITION_STRIDE, APSLK_POSITION_COMPONENT_STRIDE);
+        // A pinned vertex keeps every bit of its velocity.
+        if (step.w > 0.0f)
+            store_vector(after, velocities + (ulong)i * APSLK_VELOCITY_STRIDE, APSLK_VELOCITY_COMPONENT_STRIDE);
     }
 }
 

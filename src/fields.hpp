@@ -85,11 +85,14 @@ inline constexpr std::tuple parameter_fields{
           "between "
           "1/this and this. Not read where each triangle has its own.",
           true, true},
+    Field{"acceleration", &Parameters::acceleration, Bounds{}, "m/s²",
+          "With integrates: what vertices that are not pinned gain in each small step.", false},
+    Field{"damping", &Parameters::damping, Bounds{.least = 0.0}, "1/s",
+          "With integrates: velocities fall by exp(−damping · t).", false},
     Field{"stepping", &Parameters::stepping, Bounds{}, "",
           "Which positions each sub-step linearises about. whole_step: the end of the step. small_steps: all but the "
           "last move on by an equal part of the step and correct there. automatic: small steps from 20 sub-steps up, "
-          "with a "
-          "stretch ceiling from 2."},
+          "with a stretch ceiling or integrates from 2."},
     Field{"enabled", &Parameters::enabled, Bounds{}, "", "false: the cloth is left alone.", false},
 };
 
@@ -119,6 +122,10 @@ inline constexpr std::tuple option_fields{
           false},
     Field{"stretch_ceiling_per_triangle", &Options::stretch_ceiling_per_triangle, Bounds{}, "",
           "Each triangle has its own stretch ceiling, given with every call.", false},
+    Field{"integrates", &Options::integrates, Bounds{}, "",
+          "A call is a whole time step: positions and velocities in and out, acceleration and damping in every small "
+          "step. It requires velocities, many_groups, sub_steps ≥ 2 and small steps.",
+          false},
 };
 
 /// Of the caller's buffers.
@@ -164,6 +171,12 @@ constexpr std::string_view name_of(Enum value) {
         if (known == value) return name;
     return {};
 }
+
+/// Whether a field holds several numbers.
+template <class Value>
+inline constexpr bool is_vector = false;
+template <>
+inline constexpr bool is_vector<std::array<float, 3>> = true;
 
 /// `action(field)` of every field of a table.
 template <class Action, class... Fields>

@@ -23,8 +23,8 @@ std::string described(const Bounds& bounds, const char* kind, const std::string&
     std::string text;
     if (bounds.zero) text = std::string("0 (") + bounds.zero + ") or ";
     text += kind;
-    text += bounds.least_excluded ? " > " : " >= ";
-    text += number(bounds.least);
+    if (bounds.least > -std::numeric_limits<double>::infinity())
+        text += (bounds.least_excluded ? " > " : " >= ") + number(bounds.least);
     if (bounds.greatest < std::numeric_limits<double>::infinity())
         text += (bounds.greatest_excluded ? " and < " : " and <= ") + number(bounds.greatest);
     return unit.empty() ? text : text + " (" + unit + ")";
@@ -53,6 +53,9 @@ void check(const Struct& given, const Field<Struct, Value>& field) {
     };
     if constexpr (std::is_enum_v<Value>) {
         if (name_of(value).empty()) refuse(static_cast<int>(value), listed<Value>());
+    } else if constexpr (is_vector<Value>) {
+        for (const auto component : value)
+            if (!is_finite(component)) refuse(component, described(field.bounds, "finite numbers", field.unit));
     } else if constexpr (std::is_floating_point_v<Value>) {
         if (!is_finite(value) || !field.bounds.hold(value))
             refuse(value, described(field.bounds, "a finite number", field.unit));
@@ -84,6 +87,10 @@ void validate(const Options& options) {
         if (resolved_solver(options) != Solver::conjugate_gradient)
             invalid("execution is one_group, which needs solver conjugate_gradient");
     }
+    if (options.integrates && options.execution == Execution::one_group)
+        invalid("integrates is on, which needs execution many_groups");
+    if (options.integrates && options.positions_only)
+        invalid("integrates is on, which needs velocities: positions_only is on");
     if (options.stretch_ceiling_per_triangle && !options.limits_stretch)
         invalid("stretch_ceiling_per_triangle is on, which needs limits_stretch");
     if (options.limits_stretch) {
@@ -116,6 +123,15 @@ void validate(const Options& options, const Parameters& parameters) {
         needs(parameters.stepping != Stepping::whole_step, "small steps: stepping is whole_step");
         needs(parameters.sub_steps >= 2, "sub_steps >= 2");
         needs(parameters.first_regularization == 0.0f, "first_regularization 0");
+    }
+    if (options.integrates) {
+        if (parameters.sub_steps < 2)
+            invalid("sub_steps is " + std::to_string(parameters.sub_steps) +
+                    ", expected at least 2: Options::integrates is on");
+        if (parameters.stepping == Stepping::whole_step)
+            invalid("stepping is whole_step, which does not go with Options::integrates");
+    } else if (parameters.acceleration != std::array<float, 3>{} || parameters.damping != 0.0f) {
+        invalid("acceleration or damping is given, but Options::integrates is off");
     }
     if (parameters.stretch_ceiling > 0.0f && !options.limits_stretch)
         invalid("stretch_ceiling is " + number(parameters.stretch_ceiling) +

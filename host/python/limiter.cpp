@@ -85,6 +85,9 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
     const Parameters parameters = with_arguments(Parameters{}, settings, "limit", parameter_fields);
     Array<float> limited({static_cast<py::ssize_t>(vertex_count_), py::ssize_t{3}});
     float* const result = limited.mutable_data();
+    const bool integrates = limiter_->options().integrates;
+    Array<float> ends({static_cast<py::ssize_t>(integrates ? vertex_count_ : 0), py::ssize_t{3}});
+    float* const end = ends.mutable_data();
     Stats stats{};
     {
         const py::gil_scoped_release others_may_run;
@@ -110,7 +113,12 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
         host::check(clEnqueueReadBuffer(queue_.get(), velocities_.get(), CL_TRUE, 0, 3 * vertex_count_ * sizeof(float),
                                         result, 0, nullptr, nullptr),
                     "apsl: copying velocities from the device");
+        if (integrates)
+            host::check(clEnqueueReadBuffer(queue_.get(), positions_.get(), CL_TRUE, 0,
+                                            3 * vertex_count_ * sizeof(float), end, 0, nullptr, nullptr),
+                        "apsl: copying positions from the device");
     }
+    if (integrates) return py::make_tuple(ends, limited, to_dict(stats, stats_fields));
     return py::make_tuple(limited, to_dict(stats, stats_fields));
 }
 

@@ -19,7 +19,8 @@ public:
     /// TypeError for an option that does not exist.
     Limiter(py::handle triangles, py::handle vertex_count, py::handle device, const py::kwargs& options);
 
-    /// The limited velocities, float32 [V, 3], and a dictionary of the fields of Stats. Throws likewise.
+    /// The limited velocities, float32 [V, 3], and a dictionary of the fields of Stats; with Options::integrates the
+    /// positions at the end of the step, float32 [V, 3], before them. Throws likewise.
     py::tuple limit(py::handle positions, py::handle velocities, py::handle inverse_masses, py::handle rest_areas,
                     const py::kwargs& parameters);
 

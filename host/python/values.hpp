@@ -4,6 +4,7 @@
 #include "stats_fields.hpp"
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <string>
 #include <type_traits>
@@ -49,6 +50,14 @@ Value from_python(py::handle given, const std::string& argument) {
             expected += (expected.empty() ? "'" : ", '") + std::string(name) + "'";
         }
         refuse(argument, got, "one of " + expected);
+    } else if constexpr (is_vector<Value>) {
+        Value vector;
+        const bool is_list = py::isinstance<py::sequence>(object) || py::hasattr(object, "__array__");
+        if (!is_list || py::len(object) != vector.size()) refuse(argument, got, "three numbers");
+        for (std::size_t k = 0; k < vector.size(); ++k)
+            vector[k] =
+                from_python<typename Value::value_type>(object[py::int_(k)], argument + "[" + std::to_string(k) + "]");
+        return vector;
     } else {
         constexpr bool is_bool = std::is_same_v<Value, bool>;
         constexpr const char* expected = is_bool                           ? "True or False"

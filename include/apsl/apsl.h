@@ -111,7 +111,8 @@ typedef struct apsl_options {
     uint32_t bound_interval;              /**< by Chebyshev, >= 1: sub-steps from one bound of the matrix to the next */
     int32_t limits_stretch;               /**< not 0: principal stretches are limited too; rest shapes are given */
     int32_t stretch_ceiling_per_triangle; /**< not 0: a stretch_ceilings buffer is given with every call */
-    uint32_t reserved[4];                 /**< zeros; room for fields to come, so that the size stays */
+    int32_t integrates;                   /**< not 0: a call is a whole time step, positions in and out */
+    uint32_t reserved[8];                 /**< zeros; room for fields to come, so that the size stays */
 } apsl_options;
 
 /** apsl::Parameters: what may change from call to call. Begin with apsl_default_parameters(). */
@@ -128,7 +129,9 @@ typedef struct apsl_parameters {
     int32_t enabled;            /**< 0: the cloth is left alone in this call; 1 by default */
     float stretch_ceiling;      /**< 0, or >= 1.01: the greatest principal stretch, with limits_stretch */
     int32_t most_sub_steps;     /**< >= sub_steps: the device takes more where stretch asks; 0: automatic */
-    uint32_t reserved[6];       /**< zeros; room for fields to come, so that the size stays */
+    float acceleration[3];      /**< m/s2, with integrates */
+    float damping;              /**< 1/s >= 0, with integrates */
+    uint32_t reserved[8];       /**< zeros; room for fields to come, so that the size stays */
 } apsl_parameters;
 
 /** apsl::BufferView: 32-bit floats in a buffer of the caller's. */

@@ -83,6 +83,10 @@ struct Options {
     /// Each triangle has its own ceiling, Buffers::stretch_ceilings, in place of Parameters::stretch_ceiling. Needs
     /// limits_stretch.
     bool stretch_ceiling_per_triangle = false;
+    /// A call is a whole time step in place of a filter: positions and velocities in and out, acceleration and damping
+    /// act in every small step (docs/formulation.md, A whole step). Needs velocities, execution other than one_group,
+    /// and in every call sub_steps ≥ 2 and a stepping other than whole_step.
+    bool integrates = false;
 
     bool operator==(const Options&) const = default;  ///< field by field
 };

@@ -5,13 +5,14 @@
 #include <apsl/export.hpp>
 #include <apsl/version.hpp>
 
+#include <array>
 #include <cstdint>
 
 namespace apsl {
 
 /// Which positions each sub-step linearises about.
 enum class Stepping : std::int32_t {
-    /// small_steps from 20 sub-steps up, with Options::limits_stretch from 2; whole_step below
+    /// small_steps from 20 sub-steps up, with Options::limits_stretch or Options::integrates from 2; whole_step below
     automatic = 0,
     whole_step = 1,  ///< Algorithm 1 as printed: every sub-step starts from x̃ + Δt ṽ and what was corrected so far
     /// All sub-steps but the last move on by an equal part of Δt, with velocities that hold the corrections so far, and
@@ -50,6 +51,10 @@ struct Parameters {
     /// With Options::limits_stretch: no principal stretch of a triangle above this multiple of its rest shape, ≥ 1.01.
     /// 0: areas alone. With areas held, edges end between 1/this and this. Ignored where each triangle has its own.
     float stretch_ceiling = 0.0f;
+    /// m/s², with Options::integrates: what vertices that are not pinned gain in each small step. Gravity.
+    std::array<float, 3> acceleration{};
+    /// 1/s ≥ 0, with Options::integrates: velocities fall by exp(−damping · t).
+    float damping = 0.0f;
     Stepping stepping = Stepping::automatic;  ///< which positions each sub-step linearises about
     /// false: the cloth is left alone, nothing of it is read or written, its statistics are zeros with Status::off, and
     /// what is kept for its next call stays.

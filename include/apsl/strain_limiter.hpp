@@ -33,7 +33,7 @@ struct BufferView {
 /// order the cloths were given in.
 struct Buffers {
     /// m, 3 floats every Options::position_stride, [V]; x̃, the start of the step; only read. With
-    /// Options::positions_only the end of the step, in and out.
+    /// Options::integrates the start of the step in, its end out; with Options::positions_only its end, in and out.
     BufferView positions;
     /// m/s, 3 floats every Options::velocity_stride, [V]; ṽ in and out. Null with Options::positions_only.
     BufferView velocities;

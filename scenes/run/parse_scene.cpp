@@ -139,7 +139,9 @@ template <class Struct, class Value>
 void parse_field(SceneObject& object, const Field<Struct, Value>& field, Struct& values) {
     if (!field.in_scenes) return;
     Value& value = values.*field.member;
-    if constexpr (std::is_enum_v<Value>) {
+    if constexpr (is_vector<Value>) {
+        object.value().fail("strain_limiting has no vectors");
+    } else if constexpr (std::is_enum_v<Value>) {
         std::array<std::pair<const char*, Value>, names_of<Value>.size()> choices;
         std::ranges::transform(names_of<Value>, choices.begin(),
                                [](const auto& named) { return std::pair(named.second, named.first); });

@@ -10,6 +10,7 @@
 #include "reference/conjugate_gradient.hpp"
 #include "reference/displacements.hpp"
 #include "reference/effective_masses.hpp"
+#include "reference/free_motion.hpp"
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
 #include "reference/stretch_limiting.hpp"
@@ -38,6 +39,7 @@ void check(const Topology& topology, const Buffers<Real>& buffers, const Options
     check_size("rest_areas", buffers.rest_areas.size(), topology.triangle_count());
     if (!buffers.regularization.empty())
         check_size("regularization", buffers.regularization.size(), topology.triangle_count());
+    check_size("end_positions", buffers.end_positions.size(), options.integrates ? 3 * topology.vertex_count() : 0);
     check_values("inverse_masses", "vertex", buffers.inverse_masses, "a finite number >= 0 (1/kg)",
                  [](Real w) { return w >= Real(0); });
     check_values("rest_areas", "triangle", buffers.rest_areas, "a finite number >= 0 (m2; 0 is not limited)",
@@ -101,10 +103,13 @@ struct BasicStrainLimiter<Real>::Implementation {
     StretchLimiting<Real> stretches;  ///< with Options::limits_stretch
     Stats stats{};
 
-    void predict(const Buffers<Real>& buffers, Real time_step) {
+    void predict(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
+        const auto time_step = static_cast<Real>(parameters.time_step);
+        const FreeStep<Real> free(parameters);
         predicted.resize(buffers.positions.size());
         for (std::size_t n = 0; n < predicted.size(); ++n)
-            predicted[n] = buffers.positions[n] + time_step * buffers.velocities[n];
+            predicted[n] =
+                buffers.positions[n] + time_step * free.mean(buffers.velocities[n], n, buffers.inverse_masses);
         moved = predicted;
         total_correction.assign(predicted.size(), Real(0));
     }
@@ -137,8 +142,11 @@ struct BasicStrainLimiter<Real>::Implementation {
         return state;
     }
 
-    /// What the areas are off by at the start of the step, and the first of its `parts` parts.
-    Standing start_small_steps(const Buffers<Real>& buffers, Real time_step, int parts) {
+    /// What the areas are off by at the start of the step, and the first of its parts.
+    Standing start_small_steps(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
+        const auto time_step = static_cast<Real>(parameters.time_step),
+                   parts = static_cast<Real>(parameters.small_steps);
+        const FreePart<Real> free(parameters);
         std::copy(buffers.positions.begin(), buffers.positions.end(), moved.begin());
         const Standing at_start = standing(buffers);
         if (!at_start.finite()) return at_start;
@@ -146,8 +154,8 @@ struct BasicStrainLimiter<Real>::Implementation {
         if (options.limits_stretch) stretches.keep_start_excess(moved);
         motion.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) {
-            motion[n] = time_step * buffers.velocities[n];
-            moved[n] = buffers.positions[n] + motion[n] / static_cast<Real>(parts);
+            motion[n] = time_step * free(buffers.velocities[n], n, buffers.inverse_masses);
+            moved[n] = buffers.positions[n] + motion[n] / parts;
         }
         return standing(buffers);
     }
@@ -273,11 +281,34 @@ struct BasicStrainLimiter<Real>::Implementation {
             moved[n] += correction[n];
             total_correction[n] += carried * correction[n];
         }
-        if (sub_step + 1 >= parts) return;
+        // After the last part only positions are mended.
+        if (sub_step >= parts) return;
+        const auto time_step = static_cast<Real>(parameters.time_step), count = static_cast<Real>(parts);
+        const FreePart<Real> free(parameters);
         for (std::size_t n = 0; n < moved.size(); ++n) {
-            motion[n] += static_cast<Real>(parts) * correction[n];
-            moved[n] += motion[n] / static_cast<Real>(parts);
+            motion[n] += count * correction[n];
+            if (sub_step + 1 == parts) continue;
+            if (options.integrates) motion[n] = time_step * free(motion[n] / time_step, n, inverse_masses);
+            moved[n] += motion[n] / count;
         }
+    }
+
+    /// Where a whole step ends and with what velocities, `limited` or by acceleration and damping alone; false, and
+    /// nothing written, where a number is not finite. What pins a vertex moves it, and its velocity keeps every bit.
+    bool write_step(const Buffers<Real>& buffers, const ResolvedParameters& parameters, bool limited) {
+        const auto time_step = static_cast<Real>(parameters.time_step);
+        const FreeStep<Real> free(parameters);
+        correction.resize(moved.size());
+        std::vector<Real>& velocities = correction;
+        for (std::size_t n = 0; n < velocities.size(); ++n) {
+            const bool moves = limited && buffers.inverse_masses[n / 3] > Real(0);
+            velocities[n] = moves ? motion[n] / time_step : free.end(buffers.velocities[n], n, buffers.inverse_masses);
+            if (!moves) moved[n] = predicted[n];
+        }
+        if (!all_finite<Real>(moved) || !all_finite<Real>(velocities)) return false;
+        std::copy(moved.begin(), moved.end(), buffers.end_positions.begin());
+        std::copy(velocities.begin(), velocities.end(), buffers.velocities.begin());
+        return true;
     }
 
     /// ṽ + Σ Δx / Δt into `correction`; false where a number is not finite. Velocities of pinned vertices are copied,
@@ -363,7 +394,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         stats = {};
         stats.status = Status::diverged;
         stats.greatest_mass_ratio = 1.0f;
-        predict(buffers, time_step);
+        predict(buffers, parameters);
         if (!all_finite<Real>(predicted)) return name_offender(Offender::vertex, first_bad_vertex<Real>(predicted));
         if (options.limits_stretch) stretches.start(*topology, buffers, static_cast<Real>(parameters.stretch_ceiling));
         const Standing initial = standing(buffers);
@@ -380,7 +411,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         bool all_converged = true;
         const auto target = static_cast<double>(parameters.target_area_change);
         masses.start(buffers.inverse_masses);
-        if (parts > 0 && initial.max() > target) change = start_small_steps(buffers, time_step, parts);
+        if (parts > 0 && initial.max() > target) change = start_small_steps(buffers, parameters);
         for (;;) {
             if (!change.finite()) return name_triangle(buffers);
             if (stats.sub_steps == parameters.sub_steps) break;
@@ -401,15 +432,19 @@ struct BasicStrainLimiter<Real>::Implementation {
         }
         // Without a sub-step there is nothing to add, not even a zero: −0 + 0 would lose its sign.
         const bool any = stats.sub_steps > 0;
-        if (any && !filtered_velocities(buffers, time_step)) return;
+        if (any && !options.integrates && !filtered_velocities(buffers, time_step)) return;
         stats.status = all_converged ? Status::ok : Status::not_converged;
         count_raised(buffers.inverse_masses);
         if (options.limits_stretch) {
             stats.stretch_rows = stretches.rows_at_work();
             asked_sub_steps = next_asked_sub_steps(asked_sub_steps, stats.sub_steps, stats.greatest_mass_ratio);
         }
-        if (!is_worse(initial, change, buffers.rest_areas) && any)
+        const bool limited = !is_worse(initial, change, buffers.rest_areas) && any;
+        if (options.integrates) {
+            if (!write_step(buffers, parameters, limited)) stats.status = Status::diverged;
+        } else if (limited) {
             std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
+        }
     }
 };
 

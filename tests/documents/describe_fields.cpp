@@ -43,6 +43,9 @@ Json described(const std::tuple<Fields...>& table) {
         } else if constexpr (std::is_same_v<Value, bool>) {
             json["type"] = "bool";
             json["default"] = standard;
+        } else if constexpr (is_vector<Value>) {
+            json["type"] = "vector";
+            json["default"] = standard;
         } else if constexpr (std::is_floating_point_v<Value>) {
             json["type"] = "number";
             json["default"] = shortest(standard);

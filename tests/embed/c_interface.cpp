@@ -257,6 +257,9 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.warm_start_sub_steps == options.warm_start_sub_steps);
     CHECK(o.solver == static_cast<int>(options.solver));
     CHECK(o.bound_interval == options.bound_interval);
+    CHECK(o.limits_stretch == 0);
+    CHECK(o.stretch_ceiling_per_triangle == 0);
+    CHECK(o.integrates == 0);
     const apsl_parameters p = apsl_default_parameters();
     const Parameters parameters;
     CHECK(p.time_step == parameters.time_step);
@@ -267,10 +270,49 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(p.max_iterations == parameters.max_iterations);
     CHECK(p.adaptive_threshold == parameters.adaptive_threshold);
     CHECK(p.first_regularization == parameters.first_regularization);
+    CHECK(p.stretch_ceiling == parameters.stretch_ceiling);
+    CHECK(p.most_sub_steps == parameters.most_sub_steps);
+    CHECK(std::equal(p.acceleration, p.acceleration + 3, parameters.acceleration.begin()));
+    CHECK(p.damping == parameters.damping);
     CHECK(p.stepping == static_cast<int>(parameters.stepping));
     CHECK(p.enabled == 1);
     for (const std::uint32_t word : o.reserved) CHECK(word == 0);
     for (const std::uint32_t word : p.reserved) CHECK(word == 0);
+}
+
+TEST_CASE("a whole step by the C interface leaves the bytes of the C++ one", "[embed]") {
+    const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 1.0, Diagonals::alternating), 1);
+    const CTopology topology(cloth);
+    apsl_options c_options = apsl_default_options();
+    c_options.integrates = 1;
+    c_options.limits_stretch = 1;
+    apsl_parameters c_parameters = apsl_default_parameters();
+    c_parameters.sub_steps = 4;
+    c_parameters.most_sub_steps = 6;
+    c_parameters.stretch_ceiling = 1.05f;
+    c_parameters.acceleration[1] = -9.81f;
+    c_parameters.damping = 0.5f;
+    const Options options{.limits_stretch = true, .integrates = true};
+    const Parameters parameters{.sub_steps = 4,
+                                .most_sub_steps = 6,
+                                .stretch_ceiling = 1.05f,
+                                .acceleration = {0.0f, -9.81f, 0.0f},
+                                .damping = 0.5f};
+
+    apsl_limiter* limiter = nullptr;
+    REQUIRE(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &c_options, &limiter) ==
+            APSL_SUCCESS);
+    const CallerBuffers by_c({&cloth, 1}, options), by_cpp({&cloth, 1}, options);
+    const apsl_buffers views = c_views(by_c);
+    const Owned<cl_command_queue> queue = in_order_queue();
+    REQUIRE(apsl_limiter_enqueue(limiter, queue.get(), &views, &c_parameters, 1, 0, nullptr, nullptr) == APSL_SUCCESS);
+    clFinish(queue.get());
+    apsl_limiter_destroy(limiter);
+    StrainLimiter cpp(device().context, device().id, cloth.topology, options);
+    filter(cpp, by_cpp, {&parameters, 1});
+    CHECK(by_c.read_positions() == by_cpp.read_positions());
+    CHECK(by_c.read_velocities() == by_cpp.read_velocities());
+    CHECK(by_c.read_positions() != CallerBuffers({&cloth, 1}, options).read_positions());
 }
 
 TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {

@@ -23,6 +23,7 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
                                 define("APSLK_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
                                 define("APSLK_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
                                 define("APSLK_CHEBYSHEV", build.chebyshev ? 1 : 0) +
+                                define("APSLK_INTEGRATES", build.integrates ? 1 : 0) +
                                 define("APSLK_LIMITS_STRETCH", build.limits_stretch ? 1 : 0) +
                                 define("APSLK_STRETCH_CEILING_PER_TRIANGLE", build.limits_stretch ? 1 : 0);
     // Never released, see transfer_queue() in support/opencl.cpp.
@@ -210,6 +211,11 @@ void gather_displacements(Arrays& a, const Build& build, std::uint32_t slot, int
 void update_velocities(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "update_velocities.cl", "update_velocities");
     run(arguments::update_velocities(k, a, caller(a, build)), a.groups, build, a.cloth_count());
+}
+
+void store_step(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "store_step.cl", "store_step");
+    run(arguments::store_step(k, a, caller(a, build)), a.groups, build, a.cloth_count());
 }
 
 void filter_in_one_group(Arrays& a, const Build& build) {

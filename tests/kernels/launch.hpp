@@ -17,6 +17,7 @@ struct Build {
     bool alpha_per_triangle = false;
     bool chebyshev = false;
     bool limits_stretch = false;  ///< with a ceiling of its own for each triangle
+    bool integrates = false;
 };
 
 /// 1, 32, 64 and 256 work-items a group, as far as the device goes.
@@ -55,6 +56,7 @@ void chebyshev_step(Arrays& arrays, const Build& build, int sub_step, int launch
 void finish_solve(Arrays& arrays, const Build& build, int iterations);
 void gather_displacements(Arrays& arrays, const Build& build, std::uint32_t slot, int sub_step = 0);
 void update_velocities(Arrays& arrays, const Build& build);
+void store_step(Arrays& arrays, const Build& build);
 void filter_in_one_group(Arrays& arrays, const Build& build);
 
 }  // namespace launch

@@ -89,6 +89,44 @@ class StretchCeiling(unittest.TestCase):
             limiter(ONE_TRIANGLE, 3, limits_stretch=True, solver="conjugate_gradient")
 
 
+class WholeStep(unittest.TestCase):
+    """Integration inside the call: positions and velocities come back."""
+
+    def test_what_nothing_limits_falls(self):
+        made = limiter(ONE_TRIANGLE, 3, integrates=True)
+        positions, velocities, stats = made.step(CORNER, np.zeros((3, 3)), [0, 2, 2], [0], time_step=TIME_STEP,
+                                                 sub_steps=5, acceleration=(0, -8, 4), damping=0)
+        # Four parts of symplectic Euler: (1 + 2 + 3 + 4) / 16 of g Δt².
+        fallen = np.array([0, -8, 4]) * TIME_STEP**2 * 10 / 16
+        np.testing.assert_allclose(positions, CORNER + [[0, 0, 0], fallen, fallen], atol=1e-7)
+        np.testing.assert_allclose(velocities[1:], [np.array([0, -8, 4]) * TIME_STEP] * 2, rtol=1e-6)
+        np.testing.assert_array_equal(velocities[0], 0)
+        self.assertEqual(stats.status, "ok")
+
+    def test_what_hangs_stays(self):
+        made = limiter(ONE_TRIANGLE, 3, integrates=True, limits_stretch=True)
+        positions, velocities = CORNER, np.zeros((3, 3))
+        for _ in range(30):
+            positions, velocities, stats = made.step(positions, velocities, [0, 2, 0], [0.5], time_step=TIME_STEP,
+                                                     acceleration=[9.81, 0, 0], stretch_ceiling=1.1,
+                                                     rest_shapes=apsl.rest_shapes(CORNER, ONE_TRIANGLE))
+        np.testing.assert_allclose(positions, CORNER, atol=2e-3)
+        self.assertLess(stats.max_area_change, 2e-3)
+
+    def test_each_kind_of_limiter_has_its_call(self):
+        arrays = (CORNER, np.zeros((3, 3)), [0, 2, 0], [0.5])
+        with self.assertRaisesRegex(apsl.Error, "step: .*expected a call of limit"):
+            limiter(ONE_TRIANGLE, 3).step(*arrays)
+        made = limiter(ONE_TRIANGLE, 3, integrates=True)
+        with self.assertRaisesRegex(apsl.Error, "limit: .*expected a call of step"):
+            made.limit(*arrays)
+        for wrong in (9.81, [1, 2], [1, 2, "x"], None):
+            with self.assertRaisesRegex(apsl.Error, "acceleration"):
+                made.step(*arrays, acceleration=wrong)
+        with self.assertRaisesRegex(apsl.Error, "integrates is off"):
+            limiter(ONE_TRIANGLE, 3).limit(*arrays, damping=1.0)
+
+
 class Cloth(unittest.TestCase):
     def test_area_change_shrinks_to_what_stats_say(self):
         cloth = Grid(12)

@@ -20,6 +20,10 @@ struct Layout {
     }
 };
 
+Layout layout_of_positions(const Options& options) {
+    return {3, options.position_stride, options.position_component_stride};
+}
+
 Layout layout_of_velocities(const Options& options) {
     return {3, options.velocity_stride, options.velocity_component_stride};
 }
@@ -95,8 +99,7 @@ CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options&
     : options(the_options),
       offset(the_offset),
       vertex_count(vertices_of(cloths)),
-      positions(placed(cloths, &MovingCloth::positions, {3, options.position_stride, options.position_component_stride},
-                       offset)),
+      positions(placed(cloths, &MovingCloth::positions, layout_of_positions(options), offset)),
       velocities(placed(cloths, &MovingCloth::velocities, layout_of_velocities(options), offset)),
       inverse_masses(placed(cloths, &MovingCloth::inverse_masses, {1, options.inverse_mass_stride}, offset)),
       rest_areas(placed(cloths, &MovingCloth::rest_areas, {1, 1}, offset)),
@@ -118,12 +121,11 @@ Buffers CallerBuffers::views() const {
     return views;
 }
 
-std::vector<float> CallerBuffers::read_velocities() const {
-    for (const auto* array :
-         {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes, &stretch_ceilings})
-        array->read();
-    const std::vector<float> all = velocities.read();
-    const Layout layout = layout_of_velocities(options);
+namespace {
+
+// [3V], without the gaps, which nothing may have written to.
+std::vector<float> without_gaps(const std::vector<float>& all, const Layout& layout, std::size_t offset,
+                                std::size_t vertex_count, const char* name) {
     std::vector<float> numbers, gaps = all;
     for (std::size_t n = 0; n < 3 * vertex_count; ++n) {
         const std::size_t place = offset + layout.place(n / 3, n % 3);
@@ -131,8 +133,21 @@ std::vector<float> CallerBuffers::read_velocities() const {
         gaps[place] = poison<float>(1)[0];
     }
     if (!same_bytes(gaps, poison<float>(gaps.size())))
-        throw std::runtime_error("a float between the velocities of two vertices was written");
+        throw std::runtime_error(std::string("a float between the ") + name + " of two vertices was written");
     return numbers;
+}
+
+}  // namespace
+
+std::vector<float> CallerBuffers::read_velocities() const {
+    for (const auto* array :
+         {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes, &stretch_ceilings})
+        array->read();
+    return without_gaps(velocities.read(), layout_of_velocities(options), offset, vertex_count, "velocities");
+}
+
+std::vector<float> CallerBuffers::read_positions() const {
+    return without_gaps(positions.read(), layout_of_positions(options), offset, vertex_count, "positions");
 }
 
 std::vector<Stats> filter(StrainLimiter& limiter, const CallerBuffers& buffers,

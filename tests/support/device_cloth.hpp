@@ -45,6 +45,8 @@ struct CallerBuffers {
     Buffers views() const;
     /// [3V] of all cloths, without stride and offset. Checks the guard bands of every buffer.
     std::vector<float> read_velocities() const;
+    /// Likewise.
+    std::vector<float> read_positions() const;
 };
 
 /// Queues one call on an in-order queue, waits, and returns the statistics, one entry a cloth.

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._records import Device, Options, Parameters, Stats
+from ._records import Device, Error, Options, Parameters, Stats
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -40,8 +40,23 @@ class StrainLimiter:
         Raises Error for shapes, types and parameters that do not fit. Input that is not finite is the status
         "diverged", and the velocities come back as they were.
         """
+        if self.options["integrates"]:
+            raise Error("limit: the limiter was made with integrates=True, expected a call of step()")
         limited, stats = self._limiter.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
         return limited, Stats(**stats)
+
+    def step(self, positions: npt.ArrayLike, velocities: npt.ArrayLike, inverse_masses: npt.ArrayLike,
+             rest_areas: npt.ArrayLike, **parameters: Unpack[Parameters],
+             ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32], Stats]:
+        """A whole time step of a limiter made with integrates=True: positions and velocities at its end, float32 [V, 3]
+        in new arrays. `acceleration` and `damping` act in every small step.
+
+        The arguments are those of limit(); velocities are those at the start of the step. Raises Error likewise.
+        """
+        if not self.options["integrates"]:
+            raise Error("step: the limiter was made with integrates=False, expected a call of limit()")
+        moved, limited, stats = self._limiter.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
+        return moved, limited, Stats(**stats)
 
     @staticmethod
     def default_parameters() -> dict[str, Any]:

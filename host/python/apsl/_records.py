@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypedDict, Union
+from typing import Literal, Sequence, TypedDict, Union
 
 import numpy.typing as npt
 
@@ -23,6 +23,7 @@ class Options(TypedDict, total=False):
     bound_interval: int  # by Chebyshev, ≥ 1: sub-steps from one bound of the matrix to the next
     limits_stretch: bool  # `rest_shapes` are then given in every call, and `stretch_ceiling` counts
     stretch_ceiling_per_triangle: bool  # `stretch_ceiling` is then an array [T] in every call
+    integrates: bool  # a call is a whole time step: it returns positions too
 
 
 class Parameters(TypedDict, total=False):
@@ -41,6 +42,8 @@ class Parameters(TypedDict, total=False):
     # stretch_ceiling_per_triangle
     stretch_ceiling: Union[float, npt.ArrayLike]
     rest_shapes: npt.ArrayLike  # 1/m, [T, 4], with limits_stretch: see rest_shapes()
+    acceleration: Sequence[float]  # m/s², three, with integrates
+    damping: float  # 1/s, ≥ 0, with integrates
     stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small from 20 sub-steps up
     enabled: bool  # False: the velocities come back as they were, with status "off"
 

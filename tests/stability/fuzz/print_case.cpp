@@ -18,6 +18,8 @@ void print_changes(const Struct& values, const std::tuple<Fields...>& fields, st
         out << '.' << field.name << " = ";
         if constexpr (std::is_enum_v<std::remove_cv_t<decltype(value)>>)
             out << name_of(value);
+        else if constexpr (is_vector<std::remove_cv_t<decltype(value)>>)
+            for (const auto component : value) out << component << ' ';
         else
             out << value;
         out << ", ";

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "filter/filtered.hpp"
+#include "support/tolerances.hpp"
+
+#include <apsl/error.hpp>
+#include <apsl/reference.hpp>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+constexpr Options by_areas{.integrates = true};
+constexpr Options with_ceiling{.limits_stretch = true, .integrates = true};
+
+/// Where a step ends.
+struct Ended {
+    std::vector<double> positions, velocities;
+    Stats stats;
+};
+
+Ended step_on_device(StrainLimiter& limiter, const MovingCloth& cloth, const Options& options,
+                     const Parameters& parameters) {
+    const CallerBuffers buffers({&cloth, 1}, options);
+    const Stats stats = filter(limiter, buffers, {&parameters, 1})[0];
+    const std::vector<float> velocities = buffers.read_velocities(), positions = buffers.read_positions();
+    return {{positions.begin(), positions.end()}, {velocities.begin(), velocities.end()}, stats};
+}
+
+Ended step_on_device(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
+    StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+    return step_on_device(limiter, cloth, options, parameters);
+}
+
+Ended step_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
+    reference::StrainLimiter limiter(cloth.topology, options);
+    Ended end{cloth.positions, cloth.velocities, {}};
+    std::span<const double> shapes;
+    if (options.limits_stretch) shapes = cloth.rest_shapes;
+    limiter.enqueue({.positions = cloth.positions,
+                     .velocities = end.velocities,
+                     .inverse_masses = cloth.inverse_masses,
+                     .rest_areas = cloth.rest_areas,
+                     .regularization = {},
+                     .rest_shapes = shapes,
+                     .end_positions = end.positions},
+                    parameters);
+    end.stats = limiter.read_stats();
+    return end;
+}
+
+constexpr Parameters falling(int sub_steps, float stretch_ceiling = 0.0f) {
+    return {.regularization = 1.2f,
+            .sub_steps = sub_steps,
+            .tolerance = 3e-4f,
+            .stretch_ceiling = stretch_ceiling,
+            .acceleration = {0.5f, -9.81f, 0.25f},
+            .damping = 0.4f};
+}
+
+}  // namespace
+
+TEST_CASE("a whole step: the device agrees with the reference", "[filter][whole_step]") {
+    for (const MovingCloth& cloth : small_cloths())
+        for (const auto& [options, parameters] :
+             {std::pair{by_areas, falling(3)}, {by_areas, falling(24)}, {with_ceiling, falling(6, 1.05f)}})
+            for (const std::uint32_t work_group_size : {1u, 64u}) {
+                Options sized = options;
+                sized.work_group_size = work_group_size;
+                const Ended got = step_on_device(cloth, sized, parameters);
+                const Ended want = step_with_reference(cloth, sized, parameters);
+                CAPTURE(cloth.rest_areas.size(), parameters.sub_steps, options.limits_stretch, work_group_size);
+                CHECK(got.stats.status == want.stats.status);
+                CHECK(got.stats.sub_steps == want.stats.sub_steps);
+                std::vector<double> moved(want.positions.size());
+                for (std::size_t n = 0; n < moved.size(); ++n) moved[n] = want.positions[n] - cloth.positions[n];
+                CHECK(difference(got.positions, want.positions) <=
+                      0.03 * norm(moved) + elementwise_tolerance(200.0) * norm(want.positions));
+                CHECK(difference(got.velocities, want.velocities) <=
+                      0.05 * norm(want.velocities) + elementwise_tolerance(200.0) * norm(want.positions) /
+                                                         static_cast<double>(parameters.time_step));
+                CHECK(got.stats.max_area_change == Approx(want.stats.max_area_change).epsilon(0.02).margin(1e-4));
+                CHECK(got.stats.initial_max_area_change ==
+                      Approx(want.stats.initial_max_area_change).epsilon(1e-3).margin(1e-4));
+            }
+}
+
+TEST_CASE("a whole step: statistics are of the positions that it leaves", "[filter][whole_step]") {
+    for (const MovingCloth& cloth : small_cloths()) {
+        const Ended got = step_on_device(cloth, with_ceiling, falling(6, 1.05f));
+        const std::vector<double> areas = reference::areas<double>(*cloth.topology, got.positions);
+        double change = 0.0;
+        for (std::size_t a = 0; a < areas.size(); ++a)
+            change = std::max(change, std::abs(areas[a] / cloth.rest_areas[a] - 1.0));
+        CHECK(static_cast<double>(got.stats.max_area_change) == Approx(change).epsilon(2e-3).margin(1e-4));
+    }
+}
+
+TEST_CASE("a whole step: what is free falls as symplectic Euler in its parts, and a pin keeps its velocity",
+          "[filter][whole_step]") {
+    MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
+    std::fill(cloth.rest_areas.begin(), cloth.rest_areas.end(), 0.0);  // nothing is limited
+    const Parameters parameters = falling(5);
+    const Ended got = step_on_device(cloth, by_areas, parameters),
+                want = step_with_reference(cloth, by_areas, parameters);
+    CHECK(difference(got.positions, want.positions) <= elementwise_tolerance(10.0) * norm(want.positions));
+    CHECK(difference(got.velocities, want.velocities) <= elementwise_tolerance(10.0) * norm(want.velocities));
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (cloth.inverse_masses[v] == 0.0) CHECK(got.velocities[3 * v + k] == cloth.velocities[3 * v + k]);
+}
+
+TEST_CASE("a whole step: strides, components apart and an offset are as in a filter", "[filter][whole_step]") {
+    const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
+    const Parameters parameters = falling(4);
+    const Ended want = step_on_device(cloth, by_areas, parameters);
+    Options strided = by_areas;
+    strided.position_stride = 4;
+    strided.velocity_stride = 7;
+    Options apart = by_areas;
+    apart.position_stride = apart.velocity_stride = 1;
+    apart.position_component_stride = apart.velocity_component_stride = 64;
+    for (const Options& options : {strided, apart}) {
+        StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+        const CallerBuffers buffers({&cloth, 1}, options, 5);
+        filter(limiter, buffers, {&parameters, 1});
+        const std::vector<float> velocities = buffers.read_velocities(), positions = buffers.read_positions();
+        CHECK(std::equal(positions.begin(), positions.end(), want.positions.begin()));
+        CHECK(std::equal(velocities.begin(), velocities.end(), want.velocities.begin()));
+    }
+}
+
+TEST_CASE("a whole step: what is not finite, and what is off, is left alone", "[filter][whole_step]") {
+    const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
+    MovingCloth broken = cloth;
+    broken.velocities[17] = std::numeric_limits<double>::quiet_NaN();
+    const Ended diverged = step_on_device(broken, by_areas, falling(4));
+    CHECK(diverged.stats.status == Status::diverged);
+    CHECK(diverged.stats.offender == Offender::vertex);
+    CHECK(diverged.stats.offender_index == 5);
+    CHECK(diverged.positions == cloth.positions);
+    Parameters off = falling(4);
+    off.enabled = false;
+    const Ended left = step_on_device(cloth, by_areas, off);
+    CHECK(left.stats.status == Status::off);
+    CHECK(left.positions == cloth.positions);
+    CHECK(left.velocities == cloth.velocities);
+}
+
+TEST_CASE("a whole step: a target that is met leaves free motion", "[filter][whole_step]") {
+    const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
+    Parameters parameters = falling(4);
+    parameters.target_area_change = 100.0f;
+    const Ended got = step_on_device(cloth, by_areas, parameters),
+                want = step_with_reference(cloth, by_areas, parameters);
+    CHECK(got.stats.sub_steps == 0);
+    CHECK(difference(got.positions, want.positions) <= elementwise_tolerance(10.0) * norm(want.positions));
+    CHECK(difference(got.velocities, want.velocities) <= elementwise_tolerance(10.0) * norm(want.velocities));
+}
+
+TEST_CASE("a whole step: a curtain falls, swings and comes to rest with its areas and its ceiling",
+          "[filter][whole_step]") {
+    const Mesh mesh = grid(33, 33, 1.0, 1.0, Diagonals::alternating);
+    MovingCloth cloth = moving_cloth(mesh, 1);
+    cloth.positions = mesh.positions;
+    for (double& x : cloth.positions) x = static_cast<float>(x);
+    cloth.inverse_masses = reference::inverse_masses<double>(*cloth.topology, cloth.rest_areas, 0.2);
+    for (const std::uint32_t pin : {0u, 32u}) cloth.inverse_masses[pin] = 0.0;
+    for (double& w : cloth.inverse_masses) w = static_cast<float>(w);
+    std::fill(cloth.velocities.begin(), cloth.velocities.end(), 0.0);
+
+    StrainLimiter limiter(device().context, device().id, cloth.topology, with_ceiling);
+    const Parameters parameters{.stretch_ceiling = 1.1f, .acceleration = {0.0f, -9.81f, 0.0f}, .damping = 1.0f};
+    double area_change = 0.0, stretch = 0.0;
+    for (int frame = 0; frame < 240; ++frame) {
+        const Ended end = step_on_device(limiter, cloth, with_ceiling, parameters);
+        CAPTURE(frame);
+        REQUIRE(end.stats.status == Status::ok);
+        cloth.positions = end.positions;
+        cloth.velocities = end.velocities;
+        area_change = std::max(area_change, static_cast<double>(end.stats.max_area_change));
+        stretch = std::max(stretch, static_cast<double>(end.stats.max_stretch));
+    }
+    CHECK(area_change < 0.03);
+    CHECK(stretch < 1.13);
+    double kinetic = 0.0, lowest = 0.0;
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
+        lowest = std::min(lowest, cloth.positions[3 * v + 1]);
+        if (cloth.inverse_masses[v] > 0.0)
+            for (std::size_t k = 0; k < 3; ++k)
+                kinetic += 0.5 * cloth.velocities[3 * v + k] * cloth.velocities[3 * v + k] / cloth.inverse_masses[v];
+    }
+    CHECK(kinetic < 0.02);  // J; it fell from 0.98 J
+    CHECK(lowest < -0.9);
+    CHECK(lowest > -1.12);
+}
+
+TEST_CASE("a whole step: positions must be writable", "[filter][whole_step]") {
+    const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
+    StrainLimiter limiter(device().context, device().id, cloth.topology, by_areas);
+    const CallerBuffers buffers({&cloth, 1}, by_areas);
+    const Owned<cl_command_queue> queue = in_order_queue();
+    const cl_mem read_only =
+        clCreateBuffer(device().context, CL_MEM_READ_ONLY, sizeof(float) * cloth.positions.size(), nullptr, nullptr);
+    Buffers views = buffers.views();
+    views.positions = {read_only, 0};
+    CHECK_THROWS_WITH(limiter.enqueue(queue.get(), views, falling(4)), Catch::Contains("buffers.positions"));
+    clReleaseMemObject(read_only);
+}

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "unit/reference/sample_cloths.hpp"
+
+#include <apsl/error.hpp>
+#include <apsl/reference.hpp>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace apsl;
+using namespace apsl::reference;
+
+namespace {
+
+constexpr Options integrating{.integrates = true};
+
+// A triangle with two pinned vertices and a third above them: along its altitude one dimension, solvable by hand.
+struct Altitude {
+    std::shared_ptr<const Topology> topology = Topology::build(std::vector<Triangle>{{0, 1, 2}}, 3);
+    std::vector<double> positions{0, 0, 0, 1, 0, 0, 0.5, 1, 0};
+    std::vector<double> velocities = std::vector<double>(9, 0.0);
+    std::vector<double> inverse_masses{0, 0, 2};
+    std::vector<double> rest_areas{0.5};
+
+    Stats step(const Parameters& parameters, const Options& options = integrating) {
+        StrainLimiter limiter(topology, options);
+        limiter.enqueue({.positions = positions,
+                         .velocities = velocities,
+                         .inverse_masses = inverse_masses,
+                         .rest_areas = rest_areas,
+                         .regularization = {},
+                         .end_positions = positions},
+                        parameters);
+        return limiter.read_stats();
+    }
+};
+
+constexpr Parameters by_hand(int sub_steps) {
+    return {.time_step = 0.5f, .regularization = 2.0f, .sub_steps = sub_steps, .tolerance = 1e-6f};
+}
+
+}  // namespace
+
+TEST_CASE("a whole step: along an altitude, by hand") {
+    // Three sub-steps, so two parts of h = 0.25 s; 1.6 m/s² upwards. u = 0.4: height 1.1, the solve takes 0.05 off, u =
+    // 0.4 − 0.2 = 0.2. u = 0.6: 1.05 + 0.15 = 1.2, 0.1 off, u = 0.6 − 0.4 = 0.2. The last mends the position
+    // alone: 1.05.
+    Altitude triangle;
+    Parameters parameters = by_hand(3);
+    parameters.acceleration = {0.0f, 1.6f, 0.0f};
+    const Stats stats = triangle.step(parameters);
+    CHECK(stats.sub_steps == 3);
+    CHECK(stats.status == Status::ok);
+    CHECK(triangle.positions[7] == Approx(1.05));
+    CHECK(triangle.velocities[7] == Approx(0.2));
+    CHECK(stats.max_area_change == Approx(0.05f));
+    CHECK(stats.initial_max_area_change == Approx(0.3f));  // 0.1 + 0.2 without a limit
+}
+
+TEST_CASE("a whole step: free motion is that of symplectic Euler in the parts, with and without damping") {
+    for (const float damping : {0.0f, 0.7f}) {
+        Altitude triangle;
+        triangle.rest_areas = {0.0};  // not limited
+        triangle.velocities[6] = 0.3;
+        triangle.velocities[0] = 0.25;  // of a pin
+        Parameters parameters = by_hand(5);
+        parameters.acceleration = {1.0f, -9.81f, 2.0f};
+        parameters.damping = damping;
+        const Altitude before = triangle;
+        triangle.step(parameters);
+        std::vector<double> x = before.positions, v = before.velocities;
+        const double h = 0.5 / 4, kept = std::exp(-static_cast<double>(damping) * h);
+        for (int part = 0; part < 4; ++part)
+            for (std::size_t k = 6; k < 9; ++k) {
+                v[k] = kept * (v[k] + h * static_cast<double>(parameters.acceleration[k - 6]));
+                x[k] += h * v[k];
+            }
+        x[0] += 0.5 * 0.25;
+        for (std::size_t k = 0; k < 9; ++k) {
+            CAPTURE(damping, k);
+            CHECK(triangle.positions[k] == Approx(x[k]).margin(1e-12));
+            CHECK(triangle.velocities[k] == Approx(v[k]).margin(1e-12));
+        }
+        CHECK(triangle.velocities[0] == 0.25);
+    }
+}
+
+TEST_CASE("a whole step: what hangs at rest stays at rest, however many parts there are") {
+    // Gravity draws the vertex away from its edge; the area holds it. α is a compliance: what it yields is known.
+    for (const int sub_steps : {2, 10, 40}) {
+        Altitude triangle;
+        Parameters parameters = by_hand(sub_steps);
+        parameters.time_step = 1.0f / 60.0f;
+        parameters.regularization = 1.0f;
+        parameters.acceleration = {0.0f, 9.81f, 0.0f};
+        for (int step = 0; step < 20; ++step) triangle.step(parameters);
+        CAPTURE(sub_steps);
+        CHECK(triangle.positions[7] == Approx(1.0).epsilon(1e-6));
+        CHECK(std::abs(triangle.velocities[7]) < 1e-4);
+    }
+}
+
+TEST_CASE("a whole step: what is not finite leaves positions and velocities alone") {
+    Altitude triangle;
+    Parameters parameters = by_hand(3);
+    triangle.velocities[7] = std::numeric_limits<double>::infinity();
+    const Altitude before = triangle;
+    CHECK(triangle.step(parameters).status == Status::diverged);
+    CHECK(triangle.positions == before.positions);
+    CHECK(triangle.velocities == before.velocities);
+}
+
+TEST_CASE("a whole step: what it needs") {
+    Altitude triangle;
+    const auto message = [&](const Parameters& parameters, const Options& options) {
+        try {
+            validate(options, parameters);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    CHECK(message({.sub_steps = 1}, integrating) == "sub_steps is 1, expected at least 2: Options::integrates is on");
+    CHECK(message({.stepping = Stepping::whole_step}, integrating) ==
+          "stepping is whole_step, which does not go with Options::integrates");
+    CHECK(message({.acceleration = {0.0f, -9.81f, 0.0f}}, {}) ==
+          "acceleration or damping is given, but Options::integrates is off");
+    CHECK(message({.damping = 0.5f}, {}) == "acceleration or damping is given, but Options::integrates is off");
+    CHECK(message({.acceleration = {0.0f, std::numeric_limits<float>::infinity(), 0.0f}}, integrating) ==
+          "acceleration is inf, expected finite numbers (m/s²)");
+    CHECK(message({.damping = -1.0f}, integrating) == "damping is -1, expected a finite number >= 0 (1/s)");
+    CHECK(message({}, {.execution = Execution::one_group, .integrates = true}) ==
+          "integrates is on, which needs execution many_groups");
+    CHECK(message({}, {.positions_only = true, .integrates = true}) ==
+          "integrates is on, which needs velocities: positions_only is on");
+    CHECK_THROWS_WITH(
+        StrainLimiter(triangle.topology, integrating)
+            .enqueue({triangle.positions, triangle.velocities, triangle.inverse_masses, triangle.rest_areas, {}}, {}),
+        Catch::Contains("end_positions"));
+}
