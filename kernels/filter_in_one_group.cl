@@ -112,11 +112,10 @@ APSLK_KERNEL void filter_in_one_group(
                                                  solved,
                                                  raises_masses && sub_steps + 1 < parameters[c].sub_steps,
                                                  states[c].greatest_mass,
-                                                 raises_masses ? APSLK_HELD_TENSION : INFINITY,
-                                                 free_part(parameters + c)};
+                                                 raises_masses ? APSLK_HELD_TENSION : INFINITY};
             if (in_small_steps)  // uniform
-                advance_vertices(cloths[c], true, small_step, corner_offsets, corners, gradients, pressure, moved,
-                                 motion, total_correction);
+                advance_vertices(cloths[c], true, small_step, free_part(parameters + c), corner_offsets, corners,
+                                 gradients, pressure, moved, motion, total_correction);
             else
                 displace_vertices(cloths[c], solved, corner_offsets, corners, gradients, pressure, moved);
             const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_squared_residual;

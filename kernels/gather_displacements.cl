@@ -36,10 +36,9 @@ APSLK_KERNEL void gather_displacements(__global const apslk_cloth* cloths, __glo
                                          solved,
                                          raises_masses && sub_step + 1 < parameters[c].sub_steps,
                                          states[c].greatest_mass,
-                                         raises_masses ? APSLK_HELD_TENSION : INFINITY,
-                                         free};
-    advance_vertices(cloths[c], in_small_steps && !states[c].stopped, small_step, corner_offsets, corners, gradients,
-                     pressure, moved, motion, total_correction);
+                                         raises_masses ? APSLK_HELD_TENSION : INFINITY};
+    advance_vertices(cloths[c], in_small_steps && !states[c].stopped, small_step, free, corner_offsets, corners,
+                     gradients, pressure, moved, motion, total_correction);
     const float residual = sum_partials(partials, APSLK_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     if (get_group_id(0) == 0 && get_local_id(0) == 0 && !states[c].stopped) {
         // A polynomial is as long as it is, and nothing measures what it leaves.

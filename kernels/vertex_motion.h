@@ -119,8 +119,9 @@ APSLK_INLINE void begin_small_steps(apslk_cloth cloth, bool active, float time_s
     const float part = 1.0f / (float)small_steps;
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v;
+        const float3 velocity = load_velocity(velocities, vertex_order[place]);
         const float4 start = motion[place];
-        const float3 step = time_step * after_free_part(free, load_velocity(velocities, vertex_order[place]), start.w);
+        const float3 step = time_step * after_free_part(free, velocity, start.w);
         moved[place] = (float4)(fma((float3)(part), step, start.xyz), start.w);
         motion[place] = (float4)(step, start.w);
         total_correction[place] = (float4)(0.0f);
@@ -145,17 +146,16 @@ APSLK_INLINE void displace_vertices(apslk_cloth cloth, bool active, __global con
 // One of the small steps. The same for all vertices of a cloth.
 typedef struct {
     int sub_step, small_steps;
-    bool solved;           // there are pressures
-    bool renews_masses;    // from the next sub-step on
-    float greatest_mass;   // kg
-    float held_tension;    // greatest K w' that no mass is raised for; infinite where masses stay as given
-    apslk_free_part free;  // of Δt u, m
+    bool solved;          // there are pressures
+    bool renews_masses;   // from the next sub-step on
+    float greatest_mass;  // kg
+    float held_tension;   // greatest K w' that no mass is raised for; infinite where masses stay as given
 } apslk_small_step;
 
 // x_i += Δx_i, and on to the next part. A displacement in the part before changes the velocity by small_steps · Δx /
 // Δt, and so carries on through the parts that are left: what it adds to the end of the step is kept in
 // `total_correction`, which stays exactly zero where nothing is corrected.
-APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_step small_step,
+APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_step small_step, apslk_free_part free,
                                    __global const uint* corner_offsets, __global const uint* corners,
                                    __global const apslk_gradients* gradients, __global const float* pressure,
                                    __global float4* moved, __global float4* motion, __global float4* total_correction) {
@@ -202,8 +202,7 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
                 if (!APSLK_INTEGRATES || small_step.sub_step < small_step.small_steps) step += parts * change;
                 total += parts_left * change;
             }
-            if (APSLK_INTEGRATES && onward > 0.0f)
-                step = (float4)(after_free_part(small_step.free, step.xyz, given), 0.0f);
+            if (APSLK_INTEGRATES && onward > 0.0f) step = (float4)(after_free_part(free, step.xyz, given), 0.0f);
             if (APSLK_INTEGRATES || small_step.solved) motion[i] = (float4)(step.xyz, given);
             total_correction[i] = total;
         }
