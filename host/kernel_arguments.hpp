@@ -64,10 +64,11 @@ const Kernel& start_small_steps(const Kernel& kernel, const Arrays& a, const Buf
 }
 
 template <class Arrays>
-const Kernel& assemble_gradients(const Kernel& kernel, const Arrays& a, bool by_chebyshev, cl_int sub_step) {
+const Kernel& assemble_gradients(const Kernel& kernel, const Arrays& a, bool by_chebyshev, cl_int sub_step,
+                                 cl_int for_solve) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.triangles, a.moved, a.gradients,
                          a.residual, a.scaled_diagonal, a.ordered_rest,
-                         by_chebyshev ? a.vertex_bounds : a.ordered_scaling, a.start_errors, sub_step);
+                         by_chebyshev ? a.vertex_bounds : a.ordered_scaling, a.start_errors, sub_step, for_solve);
 }
 
 template <class Arrays>

@@ -152,7 +152,7 @@ void StrainLimiter::Implementation::queue_guess(CommandSequence& commands, const
 }
 
 void StrainLimiter::Implementation::queue_assembly(CommandSequence& commands, cl_int sub_step) const {
-    launch(commands, arguments::assemble_gradients(kernels.assemble_gradients, arrays, by_chebyshev(), sub_step));
+    launch(commands, arguments::assemble_gradients(kernels.assemble_gradients, arrays, by_chebyshev(), sub_step, 1));
     launch_one_group(commands, arguments::begin_solve(kernels.begin_solve, arrays, sub_step));
 }
 
@@ -184,7 +184,7 @@ void StrainLimiter::Implementation::queue_bound(CommandSequence& commands, cl_in
     }
     // The gradients of a sub-step before bound nothing: a sliver turns in between, and a polynomial grows without limit
     // beyond its bound.
-    launch(commands, arguments::assemble_gradients(kernels.assemble_gradients, arrays, by_chebyshev(), sub_step));
+    launch(commands, arguments::assemble_gradients(kernels.assemble_gradients, arrays, by_chebyshev(), sub_step, 0));
     launch(commands, arguments::bound_vertices(kernels.bound_vertices, arrays));
 }
 

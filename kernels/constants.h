@@ -34,8 +34,15 @@
 #define APSLK_AIMED_MASS_RATIO 8.0f
 // and what a call keeps of the number that the one before asked for.
 #define APSLK_ASKED_KEPT 0.8f
-// What stands at the start of the step is led back over the first of this number of parts of it.
+// Area errors of the start of the step are led back over the first of this number of parts of it.
 #define APSLK_PARTS_OF_LEAD 3
+// An excess of the start is held in ever smaller part, less by exp(−this / small steps) from one to the next.
+#define APSLK_EXCESS_LEAD 7.0f
+// What a sub-step was asked to take of an excess and could not is asked of the next no faster than this a step: pins
+// that leave no room below a ceiling have it give way, where tension would grow without bound.
+#define APSLK_EXCESS_ASKED_AGAIN 0.45f
+// Where areas are better than before, an excess of stretch may be greater by this factor: pins may leave no room.
+#define APSLK_GROWTH_LET_PASS 1.5f
 // Added mass of a vertex, in stiffnesses of the tension around it.
 #define APSLK_MASS_ADDED_PER_STIFFNESS 4.0f
 // The bound is that of the very triangles and masses that are solved with: this is for rounding.

@@ -26,6 +26,10 @@ typedef std::int32_t apslk_int;
 #define APSLK_REST_SHAPE_11 3
 #define APSLK_CEILING 4
 
+// Runs of the start's errors: of areas, and with a stretch ceiling of excesses, as they were and as they are held.
+#define APSLK_START_EXCESS 1
+#define APSLK_HELD_EXCESS 2
+
 // Where a cloth lies in the limiter's arrays. Fixed when the limiter is built.
 typedef struct {
     apslk_uint vertex_begin;

@@ -37,6 +37,14 @@ APSLK_INLINE lanes4 zero_unless(lanes_int condition, lanes4 v) {
     return v;
 }
 
+// The excess over a ceiling that the next of `small_steps` sub-steps lets stand, from what this one lets stand and what
+// there is before it, and was at the start of the step.
+APSLK_INLINE lanes next_held_excess(lanes held, lanes excess, lanes start, int small_steps) {
+    const float part = 1.0f / (float)small_steps;
+    const lanes could_not = excess - APSLK_EXCESS_TAKEN * (excess - held) - APSLK_EXCESS_ASKED_AGAIN * part;
+    return fmax(exp(-APSLK_EXCESS_LEAD * part) * held, fmin(could_not, start));
+}
+
 // `stretch`: of the triangles now. What takes no part is zero. `area_excess`: the area row's right-hand side.
 // `ceiling`: for this sub-step. Corner by corner, not as a loop: where LLVM unrolls one, it leaves an intrinsic that
 // Oclgrind does not have.

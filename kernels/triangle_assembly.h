@@ -107,9 +107,16 @@ APSLK_INLINE apslk_assembled_stretches assemble_stretch_rows(
     apslk_cloth cloth, apslk_triangle_geometry t, apslk_rest_shape shape, apslk_principal_stretch stretch,
     lanes rest_area, lanes area_excess, lanes area_scale, __global const uint* triangles,
     __global const float* vertex_bounds, __global apslk_gradients* gradients, __global float* residual,
-    __global float* scaled_diagonal, float error_left, __global const float* start_errors, uint a) {
+    __global float* scaled_diagonal, int small_steps, bool for_solve, __global float* start_errors, uint a) {
     lanes ceiling = shape.ceiling;
-    if (error_left > 0.0f) ceiling += error_left * load_lanes(start_errors + cloth.run, a);
+    if (small_steps > 0) {  // uniform
+        const lanes held = load_lanes(start_errors + APSLK_HELD_EXCESS * cloth.run, a);
+        const lanes start = load_lanes(start_errors + APSLK_START_EXCESS * cloth.run, a);
+        if (for_solve)  // uniform
+            store_lanes(next_held_excess(held, stretch.value - ceiling, start, small_steps),
+                        start_errors + APSLK_HELD_EXCESS * cloth.run, a);
+        ceiling += held;
+    }
     const apslk_stretch_row row = stretch_row(t, shape, stretch, rest_area, area_excess, ceiling);
     const lanes bound = APSLK_MARGIN * bounded_diagonal(t, row.gradient[0], row.gradient[1], row.gradient[2], triangles,
                                                         vertex_bounds, a);
@@ -139,16 +146,18 @@ typedef struct {
 } apslk_assembly_sums;
 
 // gradients[a], residual[a] = s b, scaled_diagonal[a] = α D. b = A − A⁰, in small steps less the share `error_left` of
-// `start_errors`. `alpha` holds for all triangles, unless `regularization` has one for each. Both come from
-// order_values. For a Chebyshev solve `regularization` holds s_i of the vertices, B takes the place of α D, and there
-// is no damping; with a stretch ceiling stretch rows follow in runs of their own. `rest`: the limiter's rest values.
+// `start_errors`, where with a stretch ceiling a run of excesses that stand for now follows; those of the next
+// sub-step are kept `for_solve`, not for a bound alone. `alpha` holds for all
+// triangles, unless `regularization` has one for each. Both come from order_values. For a Chebyshev solve
+// `regularization` holds s_i of the vertices, B takes the place of α D, and there is no damping; with a stretch ceiling
+// stretch rows follow in runs of their own. `rest`: the limiter's rest values.
 APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool active, float alpha, float damping,
                                                     float adaptive_factor, __global const uint* triangles,
                                                     __global const float4* moved, __global apslk_gradients* gradients,
                                                     __global float* residual, __global float* scaled_diagonal,
                                                     __global const float* rest, __global const float* regularization,
-                                                    bool in_small_steps, float error_left,
-                                                    __global const float* start_errors) {
+                                                    int small_steps, float error_left, bool for_solve,
+                                                    __global float* start_errors) {
     const apslk_range range = share_of(blocks_of(cloth), active);
     apslk_assembly_sums sums;
     sums.areas = no_areas();
@@ -159,7 +168,7 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
         const apslk_triangle_geometry triangle = load_triangles(triangles, moved, a);
         const lanes rest_area = load_lanes(rest, a);
         lanes excess = triangle.area - rest_area;
-        if (in_small_steps) {  // uniform
+        if (small_steps > 0) {  // uniform
             if (error_left > 0.0f) excess -= error_left * load_lanes(start_errors, a);
             const lanes least = (1.0f - APSLK_GREATEST_GROWTH) * triangle.area;
             excess = select(excess, least, excess < least);  // a NaN stays
@@ -191,12 +200,14 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
 #if APSLK_LIMITS_STRETCH
         const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
         const apslk_principal_stretch stretch = principal_stretch(triangle, shape);
-        const apslk_assembled_stretches stretches =
-            assemble_stretch_rows(cloth, triangle, shape, stretch, rest_area, area_excess, scale, triangles,
-                                  regularization, gradients, residual, scaled_diagonal, error_left, start_errors, a);
+        const apslk_assembled_stretches stretches = assemble_stretch_rows(
+            cloth, triangle, shape, stretch, rest_area, area_excess, scale, triangles, regularization, gradients,
+            residual, scaled_diagonal, small_steps, for_solve, start_errors, a);
         shift = stretches.take_part;
         sums.squares += stretches.squares;
         add_stretches(&sums.areas, rest_area, shape, stretch.value);
+#else
+        (void)for_solve;
 #endif
         lanes_int words[8];
         pack_gradient(cross_product(triangle.normal, triangle.edge[0]), triangle.inverse_mass[0], scale, words);
@@ -214,8 +225,9 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
     return sums;
 }
 
-// start_errors[a] = A − A⁰ at the start of the step, whose vertices are in `start`, and with a stretch ceiling in a run
-// of its own the excess over it; 0 where there is no rest area. Returns how many of this work-item's are not finite.
+// start_errors[a] = A − A⁰ at the start of the step, whose vertices are in `start`, and with a stretch ceiling in runs
+// of their own the excess over it, as it was and as it is held; 0 where there is no rest area. Returns how many of this
+// work-item's are not finite.
 APSLK_INLINE lanes find_start_errors(apslk_cloth cloth, bool active, __global const uint* triangles,
                                      __global const float4* start, __global const float* rest,
                                      __global float* start_errors) {
@@ -229,8 +241,9 @@ APSLK_INLINE lanes find_start_errors(apslk_cloth cloth, bool active, __global co
         store_lanes(error, start_errors, a);
 #if APSLK_LIMITS_STRETCH
         const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
-        store_lanes(stretch_excess(principal_stretch(triangle, shape).value, shape.ceiling), start_errors + cloth.run,
-                    a);
+        const lanes excess = stretch_excess(principal_stretch(triangle, shape).value, shape.ceiling);
+        store_lanes(excess, start_errors + APSLK_START_EXCESS * cloth.run, a);
+        store_lanes(excess, start_errors + APSLK_HELD_EXCESS * cloth.run, a);
 #endif
         not_finite += select((lanes)(1.0f), (lanes)(0.0f), fabs(error) < INFINITY);
     }

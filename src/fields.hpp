@@ -55,15 +55,17 @@ static_assert(static_cast<float>(least_stretch_ceiling) == APSLK_LEAST_STRETCH_C
 
 inline constexpr Bounds any_whole{.least = 0.0};
 inline constexpr Bounds at_least_one{.least = 1.0};
+/// The host queues each of them.
+inline constexpr Bounds sub_step_count{.least = 0.0, .greatest = 10000.0};
 
 inline constexpr std::tuple parameter_fields{
     Field{"time_step", &Parameters::time_step, Bounds{.least = 0.0, .least_excluded = true}, "s", "Δt of Algorithm 1.",
           false},
     Field{"regularization", &Parameters::regularization, at_least_one, "",
           "α, multiplies the diagonal of G (Section 4). Not read where each triangle has its own.", true, true},
-    Field{"sub_steps", &Parameters::sub_steps, any_whole, "", "Solves a call, at most."},
+    Field{"sub_steps", &Parameters::sub_steps, sub_step_count, "", "Solves a call, at most."},
     Field{
-        "most_sub_steps", &Parameters::most_sub_steps, any_whole, "",
+        "most_sub_steps", &Parameters::most_sub_steps, sub_step_count, "",
         "With a stretch ceiling the device takes from sub_steps to this number of small steps, as stretch and tension "
         "ask for. 0: twice sub_steps where steps are small and α is the same in all, sub_steps elsewhere."},
     Field{"target_area_change", &Parameters::target_area_change, Bounds{.least = 0.0}, "",

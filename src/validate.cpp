@@ -5,18 +5,20 @@
 
 #include <apsl/error.hpp>
 
+#include <array>
 #include <bit>
-#include <sstream>
+#include <charconv>
 #include <string>
 #include <type_traits>
 
 namespace apsl {
 namespace {
 
-std::string number(double value) {
-    std::ostringstream text;
-    text << value;
-    return text.str();
+// The shortest text that is this very number again: 1.0099999 is not 1.01.
+template <class Number>
+std::string number(Number value) {
+    std::array<char, 32> text;
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 std::string described(const Bounds& bounds, const char* kind, const std::string& unit) {
@@ -46,10 +48,8 @@ std::string listed() {
 template <class Struct, class Value>
 void check(const Struct& given, const Field<Struct, Value>& field) {
     const Value value = given.*field.member;
-    const auto refuse = [&](const auto& shown, const std::string& expected) {
-        std::ostringstream text;
-        text << field.name << " is " << shown << ", expected " << expected;
-        invalid(text.str());
+    const auto refuse = [&](auto shown, const std::string& expected) {
+        invalid(std::string(field.name) + " is " + number(shown) + ", expected " + expected);
     };
     if constexpr (std::is_enum_v<Value>) {
         if (name_of(value).empty()) refuse(static_cast<int>(value), listed<Value>());
@@ -95,15 +95,18 @@ void validate(const Options& options) {
         invalid("stretch_ceiling_per_triangle is on, which needs limits_stretch");
     if (options.limits_stretch) {
         if (resolved_solver(options) != Solver::chebyshev)
-            invalid("limits_stretch is on, which needs solver chebyshev");
+            invalid("a stretch ceiling (limits_stretch) needs solver chebyshev");
         if (options.bound_interval != 1)
-            invalid("bound_interval is " + std::to_string(options.bound_interval) + ", expected 1 with limits_stretch");
+            invalid("bound_interval is " + std::to_string(options.bound_interval) +
+                    ", expected 1 with a stretch ceiling (limits_stretch)");
     }
     if (resolved_solver(options) == Solver::chebyshev) {
-        if (!matrix_free) invalid("solver is chebyshev, which needs the consistent matrix, matrix-free");
-        if (options.warm_start_sub_steps > 0) invalid("solver is chebyshev, which takes no warm_start_sub_steps");
-        if (options.regularization_per_triangle)
-            invalid("solver is chebyshev, which needs one regularization for all triangles");
+        const std::string solver = options.solver == Solver::automatic
+                                       ? "a stretch ceiling (limits_stretch) is kept by solver chebyshev"
+                                       : "solver is chebyshev";
+        if (!matrix_free) invalid(solver + ", which needs the consistent matrix, matrix-free");
+        if (options.warm_start_sub_steps > 0) invalid(solver + ", which takes no warm_start_sub_steps");
+        if (options.regularization_per_triangle) invalid(solver + ", which needs one regularization for all triangles");
     }
 }
 
@@ -111,34 +114,32 @@ void validate(const Options& options, const Parameters& parameters) {
     validate(options);
     validate(parameters);
     if (options.positions_only && parameters.stepping == Stepping::small_steps)
-        invalid("stepping is small_steps, which needs velocities: Options::positions_only is on");
+        invalid("stepping is small_steps, which needs velocities: positions_only is on");
     if (parameters.most_sub_steps > parameters.sub_steps) {
         const auto needs = [&](bool held, const char* what) {
             if (!held)
                 invalid("most_sub_steps is " + std::to_string(parameters.most_sub_steps) +
                         ", more than sub_steps, which needs " + what);
         };
-        needs(options.limits_stretch, "Options::limits_stretch on");
-        needs(!options.positions_only, "velocities: Options::positions_only is on");
+        needs(options.limits_stretch, "limits_stretch on");
+        needs(!options.positions_only, "velocities: positions_only is on");
         needs(parameters.stepping != Stepping::whole_step, "small steps: stepping is whole_step");
         needs(parameters.sub_steps >= 2, "sub_steps >= 2");
         needs(parameters.first_regularization == 0.0f, "first_regularization 0");
     }
     if (options.integrates) {
         if (parameters.sub_steps < 2)
-            invalid("sub_steps is " + std::to_string(parameters.sub_steps) +
-                    ", expected at least 2: Options::integrates is on");
+            invalid("sub_steps is " + std::to_string(parameters.sub_steps) + ", expected at least 2: integrates is on");
         if (parameters.stepping == Stepping::whole_step)
-            invalid("stepping is whole_step, which does not go with Options::integrates");
+            invalid("stepping is whole_step, which does not go with integrates");
     } else if (parameters.acceleration != std::array<float, 3>{} || parameters.damping != 0.0f) {
-        invalid("acceleration or damping is given, but Options::integrates is off");
+        invalid("acceleration or damping is given, but integrates is off");
     }
     if (parameters.stretch_ceiling > 0.0f && !options.limits_stretch)
-        invalid("stretch_ceiling is " + number(parameters.stretch_ceiling) +
-                ", expected 0: Options::limits_stretch is off");
+        invalid("stretch_ceiling is " + number(parameters.stretch_ceiling) + ", expected 0: limits_stretch is off");
     if (resolved_solver(options) == Solver::chebyshev && parameters.adaptive_threshold > 0)
         invalid("adaptive_threshold is " + std::to_string(parameters.adaptive_threshold) +
-                ", expected 0: Options::solver is chebyshev, which has no iterations to go by");
+                ", expected 0: the solver is chebyshev, which has no iterations to go by");
 }
 
 }  // namespace apsl

@@ -58,11 +58,11 @@ Array<double> rest_shapes(py::handle positions, py::handle triangles) {
         const auto& [a, b] = two;
         const double length = std::hypot(a[0], a[1], a[2]), doubled = two.doubled_area();
         const double along = (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / length;
-        const bool has_area = doubled > 0.0;
-        *shape++ = has_area ? 1.0 / length : 0.0;
-        *shape++ = has_area ? -along / doubled : 0.0;
+        const bool is_flat = doubled == 0.0;  // what is not finite stays so
+        *shape++ = is_flat ? 0.0 : 1.0 / length;
+        *shape++ = is_flat ? 0.0 : -along / doubled;
         *shape++ = 0.0;
-        *shape++ = has_area ? length / doubled : 0.0;
+        *shape++ = is_flat ? 0.0 : length / doubled;
     }
     return result;
 }

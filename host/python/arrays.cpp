@@ -16,9 +16,9 @@ std::string shape_text(const py::array& array) {
     return py::repr(array.attr("shape"));
 }
 
-// The argument as it is, once its kind and shape are as they must be.
+// The argument as it is, once its kind and shape are as they must be. 0 `columns`: an array of one dimension.
 py::array checked(py::handle argument, const char* name, const std::string& kinds, std::optional<std::size_t> rows,
-                  const char* row_name, bool three_columns) {
+                  const char* row_name, std::size_t columns) {
     const auto array = py::array::ensure(argument);
     const std::string what = kinds == integer_kinds ? "an array of integers" : "an array of real numbers";
     if (!array) {
@@ -27,10 +27,12 @@ py::array checked(py::handle argument, const char* name, const std::string& kind
     }
     if (kinds.find(array.dtype().kind()) == std::string::npos)
         refuse(name, "dtype " + std::string(py::str(array.dtype())), what);
-    const bool right_columns = three_columns ? array.ndim() == 2 && array.shape(1) == 3 : array.ndim() == 1;
+    const bool right_columns =
+        columns > 0 ? array.ndim() == 2 && static_cast<std::size_t>(array.shape(1)) == columns : array.ndim() == 1;
     if (!right_columns || (rows && static_cast<std::size_t>(array.shape(0)) != *rows)) {
         refuse(name, "shape " + shape_text(array),
-               "(" + (rows ? std::to_string(*rows) : std::string(row_name)) + (three_columns ? ", 3)" : ",)"));
+               "(" + (rows ? std::to_string(*rows) : std::string(row_name)) +
+                   (columns > 0 ? ", " + std::to_string(columns) + ")" : std::string(",)")));
     }
     return array;
 }
@@ -40,23 +42,30 @@ py::array checked(py::handle argument, const char* name, const std::string& kind
 template <class Value>
 Array<Value> numbers(py::handle argument, const char* name, std::optional<std::size_t> rows) {
     return py::array_t < Value,
-           py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows, "triangles", false));
+           py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows, "triangles", 0));
+}
+
+template <class Value>
+Array<Value> table(py::handle argument, const char* name, std::optional<std::size_t> rows, std::size_t columns) {
+    return py::array_t < Value, py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows,
+                                                                                     "triangles", columns));
 }
 
 template <class Value>
 Array<Value> vectors(py::handle argument, const char* name, std::optional<std::size_t> rows) {
     return py::array_t < Value,
-           py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows, "vertices", true));
+           py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows, "vertices", 3));
 }
 
 template Array<float> numbers<float>(py::handle, const char*, std::optional<std::size_t>);
 template Array<double> numbers<double>(py::handle, const char*, std::optional<std::size_t>);
+template Array<float> table<float>(py::handle, const char*, std::optional<std::size_t>, std::size_t);
 template Array<float> vectors<float>(py::handle, const char*, std::optional<std::size_t>);
 template Array<double> vectors<double>(py::handle, const char*, std::optional<std::size_t>);
 
 std::vector<Triangle> triangle_list(py::handle argument) {
     const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> indices(
-        checked(argument, "triangles", integer_kinds, std::nullopt, "triangles", true));
+        checked(argument, "triangles", integer_kinds, std::nullopt, "triangles", 3));
     const auto index = indices.unchecked<2>();
     std::vector<Triangle> triangles(static_cast<std::size_t>(indices.shape(0)));
     for (std::size_t t = 0; t < triangles.size(); ++t) {

@@ -20,6 +20,10 @@ using Array = pybind11::array_t<Value, pybind11::array::c_style>;
 template <class Value>
 Array<Value> numbers(pybind11::handle argument, const char* name, std::optional<std::size_t> rows);
 
+/// Likewise [rows, columns].
+template <class Value>
+Array<Value> table(pybind11::handle argument, const char* name, std::optional<std::size_t> rows, std::size_t columns);
+
 /// Likewise [rows, 3].
 template <class Value>
 Array<Value> vectors(pybind11::handle argument, const char* name, std::optional<std::size_t> rows);

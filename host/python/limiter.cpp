@@ -6,6 +6,8 @@
 #include "opencl_error.hpp"
 #include "process.hpp"
 
+#include <cmath>
+
 namespace apsl::python {
 namespace {
 
@@ -14,6 +16,21 @@ std::optional<std::size_t> device_number(py::handle device) {
     const py::object number =
         py::hasattr(device, "number") ? py::object(device.attr("number")) : py::reinterpret_borrow<py::object>(device);
     return from_python<std::uint32_t>(number, "device");
+}
+
+// Of each triangle's number what validate() demands of one for all.
+void check_list(const Array<float>& values, const Field<Parameters, float>& field) {
+    for (py::ssize_t a = 0; a < values.size(); ++a) {
+        const float value = values.data()[a];
+        if (std::isfinite(value) && field.bounds.hold(value)) continue;
+        Parameters parameters;
+        parameters.*field.member = value;
+        try {
+            validate(parameters);
+        } catch (const Error& error) {
+            throw Error(error.code(), "triangle " + std::to_string(a) + ": " + error.what());
+        }
+    }
 }
 
 }  // namespace
@@ -73,15 +90,20 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
         if (!buffer) return given;
         if (!settings.contains(name))
             refuse(name, "nothing", std::string("an array of real numbers (limiter made with ") + option + ")");
-        py::object value = settings.attr("pop")(name);
-        if (floats_a_triangle > 1)  // a row each
-            value = py::module_::import("numpy").attr("asarray")(value).attr("reshape")(-1);
-        given = numbers<float>(value, name, floats_a_triangle * triangle_count_);
+        const py::object value = settings.attr("pop")(name);
+        given = floats_a_triangle > 1 ? table<float>(value, name, triangle_count_, floats_a_triangle)
+                                      : numbers<float>(value, name, triangle_count_);
         return given;
     };
     const auto given_regularization = taken(regularization_, "regularization", "regularization_per_triangle", 1);
     const auto given_shapes = taken(rest_shapes_, "rest_shapes", "limits_stretch", 4);
     const auto given_ceilings = taken(stretch_ceilings_, "stretch_ceiling", "stretch_ceiling_per_triangle", 1);
+    for_each_field(parameter_fields, [&](const auto& field) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>) {
+            const auto& list = field.member == &Parameters::stretch_ceiling ? given_ceilings : given_regularization;
+            if (field.may_be_a_list && list) check_list(*list, field);
+        }
+    });
     const Parameters parameters = with_arguments(Parameters{}, settings, "limit", parameter_fields);
     Array<float> limited({static_cast<py::ssize_t>(vertex_count_), py::ssize_t{3}});
     float* const result = limited.mutable_data();

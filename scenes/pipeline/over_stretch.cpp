@@ -72,8 +72,9 @@ std::vector<OverStretchedTriangle> OverStretch::triangles() const {
     return found;
 }
 
-std::string over_stretch_cause(const ClothState& cloth, std::uint32_t triangle) {
-    const std::string then = ": it lengthens as it narrows, which a limit on area lets it do";
+std::string over_stretch_cause(const ClothState& cloth, std::uint32_t triangle, bool limits_stretch) {
+    const std::string then = limits_stretch ? ": more than its stretch ceiling held"
+                                            : ": it lengthens as it narrows, which a limit on area lets it do";
     const Triangle corners = cloth.topology->triangles()[triangle];
     std::vector<std::uint32_t> pins;
     for (const std::uint32_t vertex : corners)

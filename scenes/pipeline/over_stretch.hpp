@@ -33,7 +33,7 @@ private:
 };
 
 /// Why a triangle's edges give way, in words: by which pinned vertex it hangs, how many triangles share the load there,
-/// or how far the nearest one is.
-std::string over_stretch_cause(const ClothState& cloth, std::uint32_t triangle);
+/// or how far the nearest one is. `limits_stretch`: there is a stretch ceiling, which did not hold it.
+std::string over_stretch_cause(const ClothState& cloth, std::uint32_t triangle, bool limits_stretch);
 
 }  // namespace apsl::scenes

@@ -19,19 +19,10 @@ enum class Backend { opencl, reference };
 /// asks for a CustomFilter: who compares limiters puts one in place.
 using FilterStage = std::variant<std::monostate, OpenClFilter, ReferenceFilter, CustomFilter>;
 
-/// `device`: set for Backend::opencl. Throws InputError for a list of values that does not fit the mesh,
-/// and for a cloth that a device cannot hold.
+/// `device`: set for Backend::opencl. Throws InputError for a cloth that a device cannot hold.
 inline FilterStage make_filter_stage(const Scene& scene, const ClothState& cloth, Backend backend,
                                      const std::optional<OpenClDevice>& device, bool profile) {
     if (!scene.strain_limiting) return std::monostate{};
-    const auto check_count = [&](const std::vector<float>& values, const char* key) {
-        if (!values.empty() && values.size() != cloth.topology->triangle_count())
-            throw InputError(scene.file + ": strain_limiting." + key + ": expected one number or one for each of " +
-                             std::to_string(cloth.topology->triangle_count()) + " triangles, got " +
-                             std::to_string(values.size()));
-    };
-    check_count(scene.strain_limiting->regularization, "regularization");
-    check_count(scene.strain_limiting->stretch_ceilings, "stretch_ceiling");
     if (backend == Backend::opencl)
         if (const auto text = beyond_float_range(cloth)) throw InputError(scene.file + ": " + *text);
     if (backend == Backend::reference) return ReferenceFilter(cloth, *scene.strain_limiting);

@@ -85,13 +85,13 @@ nlohmann::ordered_json to_json(const OverStretchReport& report) {
 
 }  // namespace
 
-OverStretchReport describe(const OverStretch& over_stretch, const ClothState& cloth) {
+OverStretchReport describe(const OverStretch& over_stretch, const ClothState& cloth, bool limits_stretch) {
     constexpr std::size_t most = 10;
     std::vector<OverStretchedTriangle> triangles = over_stretch.triangles();
     OverStretchReport report{.count = triangles.size(), .entries = {}};
     triangles.resize(std::min(triangles.size(), most));
     for (const OverStretchedTriangle& worst : triangles)
-        report.entries.push_back({worst, over_stretch_cause(cloth, worst.triangle)});
+        report.entries.push_back({worst, over_stretch_cause(cloth, worst.triangle, limits_stretch)});
     return report;
 }
 

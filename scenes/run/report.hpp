@@ -72,7 +72,7 @@ struct OverStretchReport {
     std::vector<Entry> entries;  ///< the ten with the longest edges, the longest first
 };
 
-OverStretchReport describe(const OverStretch& over_stretch, const ClothState& cloth);
+OverStretchReport describe(const OverStretch& over_stretch, const ClothState& cloth, bool limits_stretch);
 
 struct KernelReport {
     std::string name;

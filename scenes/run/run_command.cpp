@@ -45,6 +45,7 @@ void add_settings_warning(const Scene& scene, std::vector<std::string>& warnings
 std::vector<std::string> late_warnings(const Simulation& simulation, const RunReport& report) {
     std::vector<std::string> warnings;
     if (std::string advice = convergence_advice(report); !advice.empty()) warnings.push_back(std::move(advice));
+    if (std::string advice = ceiling_advice(report); !advice.empty()) warnings.push_back(std::move(advice));
     if (simulation.unconverged_spring_solves() > 0) {
         warnings.push_back("the springs' solve did not converge in " +
                            std::to_string(simulation.unconverged_spring_solves()) +
@@ -134,7 +135,7 @@ int run_command(const RunOptions& options) {
     if (auto* opencl = std::get_if<OpenClFilter>(&simulation.filter()); opencl != nullptr && options.profile)
         add_kernel_times(*opencl, report);
 
-    report.over_stretch = describe(simulation.over_stretch(), simulation.cloth());
+    report.over_stretch = describe(simulation.over_stretch(), simulation.cloth(), report.limits_stretch);
     const std::vector<std::string> late = late_warnings(simulation, report);
     warnings.insert(warnings.end(), late.begin(), late.end());
     report.warnings = std::move(warnings);

@@ -81,6 +81,18 @@ void change_masses(const Scene& scene, const Mesh& mesh, ClothState& cloth) {
     }
 }
 
+void check_triangle_values(const Scene& scene, const Topology& topology) {
+    if (!scene.strain_limiting) return;
+    const auto check_count = [&](const std::vector<float>& values, const char* key) {
+        if (!values.empty() && values.size() != topology.triangle_count())
+            throw InputError(scene.file + ": strain_limiting." + key + ": expected one number or one for each of " +
+                             std::to_string(topology.triangle_count()) + " triangles, got " +
+                             std::to_string(values.size()));
+    };
+    check_count(scene.strain_limiting->regularization, "regularization");
+    check_count(scene.strain_limiting->stretch_ceilings, "stretch_ceiling");
+}
+
 }  // namespace
 
 SceneCloth make_scene_cloth(const Scene& scene) {
@@ -108,6 +120,7 @@ SceneCloth make_scene_cloth(const Scene& scene) {
         cloth.caps = cap_triangles(cloth.state);
         if (const auto warning = cap_triangles_warning(cloth.caps)) cloth.warnings.push_back(name + ": " + *warning);
         note_start_inside(scene, cloth.state, cloth.warnings);
+        check_triangle_values(scene, *topology);
     } catch (const Error& error) {
         throw InputError(name + ": " + error.what());
     }

@@ -24,7 +24,7 @@ struct SceneCloth {
 };
 
 /// Makes or reads the mesh, builds its topology and resolves the pins. Throws InputError naming the scene or mesh file;
-/// among others for a triangle of rest area 0.
+/// among others for a triangle of rest area 0 and for a list of values that does not fit the mesh.
 SceneCloth make_scene_cloth(const Scene& scene);
 
 }  // namespace apsl::scenes

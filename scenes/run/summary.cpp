@@ -49,11 +49,13 @@ std::string summary_text(const RunReport& report) {
     text += format("  RMS area change        %.3f %%\n", 100.0 * summary.rms_area_change);
     text += format("  edges                  %.2f to %.2f of their rest length\n", summary.min_edge_stretch,
                    summary.max_edge_stretch);
-    text += format("  principal stretch      %.3f at most", summary.max_principal_stretch);
-    if (report.limits_stretch)
-        text += format(", %.3f over its ceiling, which held up to %u of %zu triangles", summary.max_stretch_excess,
-                       summary.stretch_rows, report.triangles);
-    text += "\n";
+    text += format("  principal stretch      %.3f at most\n", summary.max_principal_stretch);
+    if (report.limits_stretch) {
+        text +=
+            format("  stretch ceiling        exceeded by %.3f at most%s; it held up to %u of %zu triangles\n",
+                   summary.max_stretch_excess, summary.collision_seconds_per_frame > 0.0 ? ", before collisions" : "",
+                   summary.stretch_rows, report.triangles);
+    }
     if (report.over_stretch.count > 0) {
         const auto& [worst, why] = report.over_stretch.entries.front();
         text += format(
@@ -102,6 +104,19 @@ std::string convergence_advice(const RunReport& report) {
     return "strain limiting did not converge in " + std::to_string(count) + " of " +
            std::to_string(report.frames.size()) +
            " frames; raise strain_limiting.max_iterations or strain_limiting.regularization";
+}
+
+std::string ceiling_advice(const RunReport& report) {
+    if (!report.limits_stretch) return {};
+    constexpr double much = 0.1;
+    const auto count = std::count_if(report.frames.begin(), report.frames.end(),
+                                     [](const FrameReport& frame) { return frame.max_stretch_excess > much; });
+    if (count == 0) return {};
+    return format("the stretch ceiling was exceeded by up to %.3f, in %td of %zu frames by more than %.1f; raise ",
+                  summarize(report.frames).max_stretch_excess, count, report.frames.size(), much) +
+           "strain_limiting.sub_steps (30 suit most cloths, and most_sub_steps for impacts), or see that the pins "
+           "leave "
+           "the cloth room below its ceiling";
 }
 
 }  // namespace apsl::scenes

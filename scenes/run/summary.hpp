@@ -13,4 +13,7 @@ std::string summary_text(const RunReport& report);
 /// What to do about frames whose solves did not converge; empty where all did.
 std::string convergence_advice(const RunReport& report);
 
+/// What to do about frames that ended far above the stretch ceiling; empty where none did.
+std::string ceiling_advice(const RunReport& report);
+
 }  // namespace apsl::scenes

@@ -151,7 +151,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         const Standing at_start = standing(buffers);
         if (!at_start.finite()) return at_start;
         start_error = area_errors(buffers);
-        if (options.limits_stretch) stretches.keep_start_excess(moved);
+        if (options.limits_stretch) stretches.hold_excess(moved);
         motion.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) {
             motion[n] = time_step * free(buffers.velocities[n], n, buffers.inverse_masses);
@@ -199,9 +199,7 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     /// Both rows of every triangle.
     SolveResult<Real> solve_with_stretches(const ResolvedParameters& parameters) {
-        const int parts = parameters.small_steps;
-        const StretchSolve how{parts > 0 ? double{start_error_left(stats.sub_steps, parts, true)} : 0.0,
-                               products(parameters)};
+        const StretchSolve how{parameters.small_steps, products(parameters)};
         stretches.solve(moved, geometry, area_excess, how);
         return polynomial_result(how.products, stretches.finite());
     }
@@ -343,9 +341,11 @@ struct BasicStrainLimiter<Real>::Implementation {
         const bool rose =
             change.max() > initial.max() || change.rms() > initial.rms() || change.capped_rms() > initial.capped_rms();
         const bool at_rest = initial.max() <= static_cast<double>(APSLK_AT_REST);
-        bool worse = rose && (at_rest || change.capped_rms() >= initial.capped_rms());
+        const bool lets_pass = options.limits_stretch && change.areas.rms < initial.areas.rms;
+        const double let_pass = lets_pass ? double{APSLK_GROWTH_LET_PASS} : 1.0;
+        bool worse = rose && (at_rest || change.capped_rms() >= let_pass * initial.capped_rms());
         // Where tension goes unstable all of a cloth explodes, and the cap would hide it.
-        if (options.limits_stretch) worse = worse || change.rms() > initial.rms();
+        if (options.limits_stretch) worse = worse || change.rms() > let_pass * initial.rms();
         set_standing(worse ? initial : change);
         if (rose && !at_rest) stats.status = Status::worsened;
         if (!worse && change.max() > initial.max()) name_offender(Offender::triangle, worst_triangle(rest_areas));

@@ -20,6 +20,15 @@ constexpr ConstraintRow<Real> no_row() {
     return {Real(0), {Vector3<Real>::Zero(), Vector3<Real>::Zero(), Vector3<Real>::Zero()}};
 }
 
+/// The excess that the next of `small_steps` sub-steps lets stand, from what this one lets stand and what there is
+/// before it: what this one is asked to take and cannot is asked for again slowly.
+template <class Real>
+Real next_held_excess(Real held, Real excess, Real start, int small_steps) {
+    const Real part = Real(1) / static_cast<Real>(small_steps);
+    const Real could_not = excess - Real(excess_taken) * (excess - held) - Real(APSLK_EXCESS_ASKED_AGAIN) * part;
+    return std::max(std::exp(-Real(APSLK_EXCESS_LEAD) * part) * held, std::min(could_not, start));
+}
+
 }  // namespace
 
 template <class Real>
@@ -37,6 +46,7 @@ void StretchLimiting<Real>::start(const Topology& topology, const Buffers<Real>&
         ceilings_[a] = has_shape && rest_areas_[a] > Real(0) ? given : Real(0);
     }
     start_excess_.assign(count, Real(0));
+    held_excess_.assign(count, Real(0));
     inverse_masses_.assign(given_inverse_masses_.begin(), given_inverse_masses_.end());
     tension_.assign(inverse_masses_.size(), Real(0));
     stiffness_.assign(inverse_masses_.size(), Real(0));
@@ -69,8 +79,9 @@ Real StretchLimiting<Real>::excess(std::size_t a, std::span<const Real> position
 }
 
 template <class Real>
-void StretchLimiting<Real>::keep_start_excess(std::span<const Real> positions) {
+void StretchLimiting<Real>::hold_excess(std::span<const Real> positions) {
     for (std::size_t a = 0; a < start_excess_.size(); ++a) start_excess_[a] = excess(a, positions);
+    held_excess_ = start_excess_;
 }
 
 template <class Real>
@@ -101,13 +112,15 @@ StretchExcess StretchLimiting<Real>::measure(std::span<const Real> positions) co
 /// What triangle a's ceiling demands beyond its area row; zero where it takes no part.
 template <class Real>
 ConstraintRow<Real> StretchLimiting<Real>::limited_row(std::size_t a, std::span<const Real> positions,
-                                                       const ConstraintRow<Real>& area, Real start_left) {
+                                                       const ConstraintRow<Real>& area, int small_steps) {
     share_[a] = Real(0);
     if (ceilings_[a] == Real(0)) return no_row<Real>();
     const Triangle& triangle = topology_->triangles()[a];
-    const Real ceiling = ceilings_[a] + start_left * start_excess_[a];
+    const Real ceiling = ceilings_[a] + held_excess_[a];
     const ConstraintRow<Real> row = stretch_row(shapes_[a], triangle, positions, rest_areas_[a], ceiling);
     stretch_[a] = ceiling + row.value / rest_areas_[a];
+    if (small_steps > 0)
+        held_excess_[a] = next_held_excess(held_excess_[a], stretch_[a] - ceilings_[a], start_excess_[a], small_steps);
     if (!(stretch_[a] > ceiling - Real(stretch_margin))) return no_row<Real>();
     const std::array<Real, 3> w{inverse_masses_[triangle[0]], inverse_masses_[triangle[1]],
                                 inverse_masses_[triangle[2]]};
@@ -126,7 +139,7 @@ void StretchLimiting<Real>::solve(std::span<const Real> positions, std::span<con
     for (std::size_t a = 0; a < count; ++a) {
         rows_[a] = area_row(geometry[a], Real(0));
         rows_[a].value = area_excess[static_cast<Eigen::Index>(a)];
-        rows_[count + a] = limited_row(a, positions, rows_[a], static_cast<Real>(how.start_left));
+        rows_[count + a] = limited_row(a, positions, rows_[a], how.small_steps);
     }
     system_ = row_system<Real>(*topology_, rows_, owners_, inverse_masses_);
     const SparseMatrix<Real> G = row_matrix<Real>(system_, inverse_masses_);
@@ -203,7 +216,7 @@ std::uint32_t StretchLimiting<Real>::rows_at_work() const {
 template <class Real>
 std::size_t StretchLimiting<Real>::bytes() const {
     return shapes_.size() * sizeof(shapes_[0]) + rows_.size() * (sizeof(rows_[0]) + sizeof(owners_[0]) + 1) +
-           (ceilings_.size() + start_excess_.size() + stretch_.size() + share_.size() + inverse_masses_.size() +
+           (ceilings_.size() + held_excess_.size() + stretch_.size() + share_.size() + inverse_masses_.size() +
             tension_.size() + stiffness_.size()) *
                sizeof(Real) +
            static_cast<std::size_t>(system_.J.nonZeros()) * (sizeof(Real) + sizeof(int)) +

@@ -23,8 +23,8 @@ struct StretchExcess {
 
 /// What a solve for areas and stretches at once needs to know.
 struct StretchSolve {
-    double start_left = 0.0;  ///< share of the start's excess that stays for now
-    int products = 1;         ///< of the polynomial
+    int small_steps = 0;  ///< of the call
+    int products = 1;     ///< of the polynomial
 };
 
 /// The stretch ceiling of one call: two rows a triangle, of its area and of its greatest principal stretch, solved
@@ -35,8 +35,8 @@ class StretchLimiting {
 public:
     /// `ceiling`: of all triangles, where `buffers` has none for each.
     void start(const Topology& topology, const Buffers<Real>& buffers, Real ceiling);
-    /// Keeps what the excess is at the start of the step.
-    void keep_start_excess(std::span<const Real> positions);
+    /// Lets the excess of the start of the step stand, for now.
+    void hold_excess(std::span<const Real> positions);
 
     StretchExcess measure(std::span<const Real> positions) const;
     /// Of triangle a: max(0, s₁ − ceiling).
@@ -60,14 +60,14 @@ private:
     Real stretch(std::size_t a, std::span<const Real> positions) const;  ///< s₁
     Real excess(std::size_t a, Real stretch) const;                      ///< of a triangle with a ceiling
     ConstraintRow<Real> limited_row(std::size_t a, std::span<const Real> positions, const ConstraintRow<Real>& area,
-                                    Real start_left);
+                                    int small_steps);
     void find_tension(std::span<const TriangleGeometry<Real>> geometry);
 
     const Topology* topology_ = nullptr;
     std::span<const Real> given_inverse_masses_, rest_areas_;
     std::vector<RestShape<Real>> shapes_;
-    std::vector<Real> ceilings_;  ///< 0: none
-    std::vector<Real> start_excess_;
+    std::vector<Real> ceilings_;                    ///< 0: none
+    std::vector<Real> start_excess_, held_excess_;  ///< at the start of the step, and that the sub-step lets stand
 
     std::vector<ConstraintRow<Real>> rows_;  ///< areas, [T], then stretches, [T]; one that takes no part is zero
     std::vector<std::uint32_t> owners_;

@@ -142,7 +142,7 @@ TEST_CASE("enqueue refuses buffers it cannot use, names them, and queues nothing
     }
     StrainLimiter by_chebyshev = limiter({.solver = Solver::chebyshev});
     CHECK(by_chebyshev.options().execution == Execution::many_groups);
-    check_invalid("adaptive_threshold is 4, expected 0: Options::solver is chebyshev", [&] {
+    check_invalid("adaptive_threshold is 4, expected 0: the solver is chebyshev", [&] {
         clReleaseEvent(by_chebyshev.enqueue(queue.get(), CallerBuffers({&cloth(), 1}, {}).views(),
                                             Parameters{.adaptive_threshold = 4}));
     });

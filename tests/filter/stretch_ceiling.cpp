@@ -135,6 +135,42 @@ TEST_CASE("stretch ceiling: a curtain that falls by gravity alone keeps it, and 
     CHECK(stretch > 1.09);  // it is drawn to the ceiling
 }
 
+TEST_CASE("stretch ceiling: where pins leave no room it gives way, and areas hold", "[filter][stretch_ceiling]") {
+    constexpr Parameters parameters{.stretch_ceiling = 1.1f};
+    constexpr double time_step = 1.0 / 60.0, speed = 0.3;  // m/s: parted by 30 % in a second
+    Hanging sheet(17);
+    for (std::size_t v = 0; v < sheet.cloth.inverse_masses.size(); ++v)
+        sheet.cloth.inverse_masses[v] = std::abs(sheet.cloth.positions[3 * v]) > 0.499
+                                            ? 0.0
+                                            : static_cast<double>(static_cast<float>(17 * 17 / 0.2));
+    StrainLimiter limiter(device().context, device().id, sheet.cloth.topology, with_ceiling);
+    float area_change = 0.0f, mass_ratio = 1.0f, excess = 0.0f;
+    double fastest = 0.0;
+    for (int frame = 0; frame < 90; ++frame) {
+        sheet.accelerate(time_step);
+        for (std::size_t v = 0; v < sheet.cloth.inverse_masses.size(); ++v)
+            if (sheet.cloth.inverse_masses[v] == 0.0)
+                sheet.cloth.velocities[3 * v] = frame < 60 && sheet.cloth.positions[3 * v] > 0.0
+                                                    ? static_cast<double>(static_cast<float>(speed))
+                                                    : 0.0;
+        const CallerBuffers buffers({&sheet.cloth, 1}, with_ceiling);
+        const Stats stats = filter(limiter, buffers, {&parameters, 1})[0];
+        const std::vector<float> velocities = buffers.read_velocities();
+        sheet.cloth.velocities.assign(velocities.begin(), velocities.end());
+        sheet.move(time_step);
+        area_change = std::max(area_change, stats.max_area_change);
+        mass_ratio = std::max(mass_ratio, stats.greatest_mass_ratio);
+        excess = stats.max_stretch_excess;
+        if (frame >= 60)
+            for (const double v : sheet.cloth.velocities) fastest = std::max(fastest, std::abs(v));
+    }
+    CHECK(area_change < 0.1f);
+    CHECK(mass_ratio < 1000.0f);
+    CHECK(excess > 0.1f);  // named
+    CHECK(excess < 1.0f);
+    CHECK(fastest < 4.0);
+}
+
 TEST_CASE("stretch ceiling: cloths with ceilings of their own get the bytes they would get alone",
           "[filter][stretch_ceiling]") {
     const std::vector<MovingCloth> all = small_cloths();

@@ -118,9 +118,10 @@ void order_triangle_values(Arrays& a, const Build& build) {
     run(arguments::order_triangle_values(k, a, caller(a, build)), a.groups, build, a.cloth_count());
 }
 
-void assemble_gradients(Arrays& a, const Build& build, int sub_step) {
+void assemble_gradients(Arrays& a, const Build& build, int sub_step, bool for_solve) {
     const host::Kernel& k = kernel(a, build, "assemble_gradients.cl", "assemble_gradients");
-    run(arguments::assemble_gradients(k, a, build.chebyshev, sub_step), a.groups, build, a.cloth_count());
+    run(arguments::assemble_gradients(k, a, build.chebyshev, sub_step, for_solve ? 1 : 0), a.groups, build,
+        a.cloth_count());
 }
 
 void measure_area_change(Arrays& a, const Build& build) {

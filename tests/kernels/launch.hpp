@@ -36,7 +36,7 @@ void rest_areas(Arrays& arrays, const Build& build);
 void rest_shapes(Arrays& arrays, const Build& build);
 void order_triangle_values(Arrays& arrays, const Build& build);
 void order_stretch_limits(Arrays& arrays, const Build& build);
-void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0);
+void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0, bool for_solve = true);
 void measure_area_change(Arrays& arrays, const Build& build);
 void measure_step(Arrays& arrays, const Build& build);
 void judge_whole_step(Arrays& arrays, const Build& build);

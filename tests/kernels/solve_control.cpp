@@ -214,6 +214,36 @@ TEST_CASE("end_call: never worse than at the start", "[end_call]") {
     }
 }
 
+TEST_CASE("end_call: with a stretch ceiling an excess may grow by half where areas are better", "[end_call]") {
+    struct Outcome {
+        float initial_rms, initial_rms_excess;
+        int discarded;
+    };
+    // What the groups report is an RMS of 0.1 of areas and of 0.3 of the excess.
+    const std::vector<Outcome> outcomes{
+        {0.2f, 0.25f, 0}, {0.2f, 0.1f, 0}, {0.12f, 0.1f, 1}, {0.09f, 0.31f, 0}, {0.09f, 0.25f, 1}};
+    for (const Outcome& expected : outcomes) {
+        CAPTURE(expected.initial_rms, expected.initial_rms_excess);
+        Reported reported(paper_setting);
+        const float both = std::hypot(expected.initial_rms, expected.initial_rms_excess);
+        apslk_stats stats{};
+        stats.sub_steps = 10;
+        stats.initial_max_area_change = stats.initial_rms_area_change = expected.initial_rms;
+        stats.initial_max_stretch_excess = stats.initial_rms_stretch_excess = expected.initial_rms_excess;
+        reported.arrays.stats.write({stats});
+        for (const int kind : {APSLK_PARTIAL_MAX_STRETCH, APSLK_PARTIAL_MAX_EXCESS, APSLK_PARTIAL_STRETCH_ROWS,
+                               APSLK_PARTIAL_EXTENT, APSLK_PARTIAL_RAISED})
+            reported.arrays.write_partial_sum(0, kind, 0.0);
+        reported.arrays.write_partial_sum(0, APSLK_PARTIAL_MEASURED, 1.0);
+        reported.arrays.write_partial_sum(0, APSLK_PARTIAL_SQUARED_CHANGE, 0.01);
+        reported.arrays.write_partial_sum(0, APSLK_PARTIAL_SQUARED_EXCESS, 0.09);
+        reported.arrays.write_partial_sum(0, APSLK_PARTIAL_CAPPED_CHANGE, 0.1);
+        reported.arrays.edit_states([&](apslk_solve_state& state) { state.initial_capped_rms = both; });
+        launch::end_call(reported.arrays, {.chebyshev = true, .limits_stretch = true});
+        CHECK(reported.state().discarded == expected.discarded);
+    }
+}
+
 TEST_CASE("end_call: names the first vertex or triangle that is not finite", "[end_call][offender]") {
     for (const std::uint32_t group : work_group_sizes()) {
         CAPTURE(group);

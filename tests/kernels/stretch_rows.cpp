@@ -198,6 +198,58 @@ TEST_CASE("stretch rows: gradients, bound, right-hand side and share are the ref
     }
 }
 
+TEST_CASE("stretch rows: what stands over a ceiling is asked for slowly", "[assemble_gradients]") {
+    const Parameters thirty_parts{.sub_steps = 31, .stepping = Stepping::small_steps};
+    for (const std::uint32_t group : {1u, 64u}) {
+        CAPTURE(group);
+        const std::vector<Cloth> cloths = every_kind_of_mesh();
+        const Build build = with_stretches(group);
+        Arrays arrays(cloths, Matrix::consistent, thirty_parts, 3);
+        const std::size_t run = arrays.adjacency.triangle_count;
+        arrays.start_errors.write(std::vector<float>(arrays.start_errors.size(), 0.0f));
+        arrays.vertex_bounds.write(std::vector<float>(arrays.vertex_bounds.size(), 1.0f));
+        launch::assemble_gradients(arrays, build, 3, false);
+        CHECK(arrays.start_errors.read() == std::vector<float>(arrays.start_errors.size(), 0.0f));
+        const std::vector<float> plain = arrays.residual.read(), bounds = arrays.scaled_diagonal.read();
+        // At the start 0.02, of which it is held what it may be.
+        std::vector<float> held(3 * run, 0.0f);
+        for (std::size_t c = 0; c < cloths.size(); ++c)
+            for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a)
+                held[APSLK_HELD_EXCESS * run + arrays.triangle_places[c][a]] = 0.01f * static_cast<float>(a % 5);
+        std::fill_n(held.begin() + static_cast<std::ptrdiff_t>(run), run, 0.02f);
+        arrays.start_errors.write(held);
+        launch::assemble_gradients(arrays, build, 3);
+        const std::vector<float> next = arrays.start_errors.read(), residual = arrays.residual.read();
+        const std::vector<Gradients> gradients = arrays.gradients.read();
+        std::size_t at_work = 0, standing = 0;
+        for (std::size_t c = 0; c < cloths.size(); ++c) {
+            const BothRows both = both_rows(cloths[c]);
+            for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a) {
+                if (cloths[c].stretch_ceilings[a] == 0.0) continue;
+                CAPTURE(c, a);
+                const std::size_t place = arrays.triangle_places[c][a];
+                const double stands = static_cast<double>(held[APSLK_HELD_EXCESS * run + place]);
+                const double excess = both.stretch[a] - cloths[c].stretch_ceilings[a];
+                const double could_not = excess - excess_taken * (excess - stands) - 0.45 / 30.0;
+                const double want = std::max(std::exp(-7.0 / 30.0) * stands, std::min(could_not, 0.02));
+                CHECK(static_cast<double>(next[APSLK_HELD_EXCESS * run + place]) ==
+                      Approx(want).epsilon(1e-4).margin(1e-5));
+                standing += want > std::exp(-7.0 / 30.0) * stands ? 1u : 0u;
+                if (gradients[place].shift == 0.0f) continue;
+                ++at_work;
+                const double scale = 1.0 / std::sqrt(static_cast<double>(bounds[run + place]));
+                CHECK(static_cast<double>(residual[run + place]) ==
+                      Approx(static_cast<double>(plain[run + place]) -
+                             scale * excess_taken * cloths[c].rest_areas[a] * stands)
+                          .epsilon(1e-3)
+                          .margin(1e-5));
+            }
+        }
+        CHECK(at_work > 50);
+        CHECK(standing > 10);
+    }
+}
+
 TEST_CASE("chebyshev_step with stretch rows: the clamped polynomial of the reference", "[chebyshev_step]") {
     for (const std::uint32_t group : {1u, 64u})
         for (const float alpha : {3.0f, 1.3f}) {

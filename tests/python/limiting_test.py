@@ -58,6 +58,7 @@ class StretchCeiling(unittest.TestCase):
     def test_the_shape_of_a_right_triangle(self):
         np.testing.assert_array_equal(apsl.rest_shapes(CORNER, ONE_TRIANGLE), [[1, 0, 0, 1]])
         np.testing.assert_array_equal(apsl.rest_shapes(np.zeros((3, 3)), ONE_TRIANGLE), [[0, 0, 0, 0]])
+        self.assertTrue(np.isnan(apsl.rest_shapes(np.full((3, 3), np.nan), ONE_TRIANGLE)).any())
 
     def test_stretch_and_area_are_held_and_told_of(self):
         velocities, stats = self.limit(64, 1.1)  # to twice its length
@@ -83,6 +84,12 @@ class StretchCeiling(unittest.TestCase):
             made.limit(*arrays, rest_shapes=[[1, 0, 0, 1]], stretch_ceiling=1.0)
         with self.assertRaisesRegex(apsl.Error, "rest_shapes"):
             made.limit(*arrays, rest_shapes=[[1, 0, 0]], stretch_ceiling=1.1)
+        for shapes in ([1, 0, 0, 1], [[1, 0], [0, 1]], [[[1, 0], [0, 1]]]):
+            with self.assertRaisesRegex(apsl.Error, r"rest_shapes: got shape \(.*\), expected \(1, 4\)"):
+                made.limit(*arrays, rest_shapes=shapes, stretch_ceiling=1.1)
+        for ceiling in (1.0, -1, float("nan"), float("inf")):
+            with self.assertRaisesRegex(apsl.Error, "triangle 0: stretch_ceiling is .*, expected 0 .areas alone. or a"):
+                self.limit(1, [ceiling], stretch_ceiling_per_triangle=True)
         with self.assertRaisesRegex(apsl.Error, "limits_stretch is off"):
             limiter(ONE_TRIANGLE, 3).limit(*arrays, stretch_ceiling=1.1)
         with self.assertRaisesRegex(apsl.Error, "solver chebyshev"):

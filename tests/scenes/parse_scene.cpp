@@ -239,7 +239,7 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("strain_limiting": {"solver": "chebyshev", "warm_start_sub_steps": 2})",
          "strain_limiting: solver is chebyshev, which takes no warm_start_sub_steps"},
         {R"("strain_limiting": {"solver": "chebyshev", "adaptive_threshold": 2})",
-         "strain_limiting: adaptive_threshold is 2, expected 0: Options::solver is chebyshev"},
+         "strain_limiting: adaptive_threshold is 2, expected 0: the solver is chebyshev"},
         {R"("strain_limiting": {"target_area_change": -0.1})",
          "strain_limiting.target_area_change: expected a number ≥ 0, got -0.1"},
         {R"("strain_limiting": {"matrix": "exact"})",

@@ -71,12 +71,16 @@ TEST_CASE("wrong meshes are refused in one line") {
                   "nan.ply:11: vertex 1: expected three finite coordinates");
 }
 
-TEST_CASE("regularizations that do not fit the mesh are refused in one line") {
+TEST_CASE("lists of values that do not fit the mesh are refused in one line") {
     const TemporaryFolder folder;
     const std::string scene =
         folder.write("map.json", grid_scene + R"("strain_limiting": {"regularization": [1.1, 1.2]}})");
     check_refused("run " + scene + " --backend reference",
                   "strain_limiting.regularization: expected one number or one for each of 32 triangles, got 2");
+    for (const char* command : {"run ", "validate "})
+        check_refused(command + scene + " --set strain_limiting.regularization=1.1" +
+                          " --set strain_limiting.stretch_ceiling=[1.1,1.2]",
+                      "strain_limiting.stretch_ceiling: expected one number or one for each of 32 triangles, got 2");
 }
 
 TEST_CASE("a device that is not there is refused in one line") {

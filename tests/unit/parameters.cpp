@@ -66,9 +66,9 @@ TEST_CASE("more sub-steps where stretch asks for them: what that needs") {
           "most_sub_steps is 29, expected 0 (automatic) or a whole number >= sub_steps, which is 30");
     CHECK(message({.most_sub_steps = -1}) == "most_sub_steps is -1, expected a whole number >= 0");
     const std::string more = "most_sub_steps is 60, more than sub_steps, which needs ";
-    CHECK(message({.most_sub_steps = 60}, {}) == more + "Options::limits_stretch on");
+    CHECK(message({.most_sub_steps = 60}, {}) == more + "limits_stretch on");
     CHECK(message({.most_sub_steps = 60}, {.positions_only = true, .limits_stretch = true}) ==
-          more + "velocities: Options::positions_only is on");
+          more + "velocities: positions_only is on");
     CHECK(message({.most_sub_steps = 60, .stepping = Stepping::whole_step}) ==
           more + "small steps: stepping is whole_step");
     CHECK(message({.sub_steps = 1, .most_sub_steps = 60}) == more + "sub_steps >= 2");

@@ -45,7 +45,7 @@ TEST_CASE("over-stretch: the cause is told by the pinned vertices") {
     const test::Mesh mesh{.triangles = {{0, 1, 2}, {1, 3, 2}, {1, 4, 3}, {0, 2, 5}},
                           .positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 0, 0, -1, 1, 0}};
     const auto starts = [&](std::uint32_t triangle, const std::vector<std::uint32_t>& pinned, const char* start) {
-        const std::string text = over_stretch_cause(sample_cloth(mesh, pinned), triangle);
+        const std::string text = over_stretch_cause(sample_cloth(mesh, pinned), triangle, false);
         INFO(text);
         CHECK(text.rfind(start, 0) == 0);
     };
@@ -53,6 +53,7 @@ TEST_CASE("over-stretch: the cause is told by the pinned vertices") {
     starts(0, {1}, "hangs by pinned vertex 1, one of 3 triangles that carry the load there: ");
     starts(0, {0, 1}, "holds 2 pinned vertices, which move apart");
     starts(1, {4}, "1 edge from pinned vertex 4, ");
+    CHECK(over_stretch_cause(sample_cloth(mesh, {4}), 2, true).ends_with(": more than its stretch ceiling held"));
     starts(3, {4}, "2 edges from pinned vertex 4, ");
     starts(0, {}, "far from any pinned vertex: ");
 }

@@ -120,12 +120,12 @@ TEST_CASE("a whole step: what it needs") {
         }
         return std::string("no error");
     };
-    CHECK(message({.sub_steps = 1}, integrating) == "sub_steps is 1, expected at least 2: Options::integrates is on");
+    CHECK(message({.sub_steps = 1}, integrating) == "sub_steps is 1, expected at least 2: integrates is on");
     CHECK(message({.stepping = Stepping::whole_step}, integrating) ==
-          "stepping is whole_step, which does not go with Options::integrates");
+          "stepping is whole_step, which does not go with integrates");
     CHECK(message({.acceleration = {0.0f, -9.81f, 0.0f}}, {}) ==
-          "acceleration or damping is given, but Options::integrates is off");
-    CHECK(message({.damping = 0.5f}, {}) == "acceleration or damping is given, but Options::integrates is off");
+          "acceleration or damping is given, but integrates is off");
+    CHECK(message({.damping = 0.5f}, {}) == "acceleration or damping is given, but integrates is off");
     CHECK(message({.acceleration = {0.0f, std::numeric_limits<float>::infinity(), 0.0f}}, integrating) ==
           "acceleration is inf, expected finite numbers (m/s²)");
     CHECK(message({.damping = -1.0f}, integrating) == "damping is -1, expected a finite number >= 0 (1/s)");
