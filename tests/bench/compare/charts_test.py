@@ -30,6 +30,8 @@ def made_up_run(scene, method, milliseconds, mean, parameters=None, triangles=81
             "limiter_seconds_per_frame": {"median": 1e-3 * milliseconds},
             "max_area_change": 2.0 * mean, "mean_max_area_change": mean, "rms_area_change": 0.3 * mean,
             "mean_displacement": [0.0, -mean, 0.0], "frame_max_area_change": [mean, 2.0 * mean, None],
+            "settled": {"max_area_change": mean, "max_edge_stretch": 1.0 + 2.0 * mean,
+                        "max_principal_stretch": 1.0 + 3.0 * mean},
             "deviation": {"frames": [{"frame": 9, "rms": 0.01 * mean, "max": 0.1 * mean}]}}
 
 
@@ -81,6 +83,7 @@ class Charts(unittest.TestCase):
     def test_every_chart_is_drawn(self):
         for script, arguments in (("pareto_chart", ("--scene", "curtain")), ("convergence_chart", ("--scene", "curtain")),
                                   ("compare_curves", ("--scene", "curtain")), ("locking_chart", ()),
+                                  ("stretch_chart", ("--scene", "curtain", "--ceiling", "1.1")),
                                   ("refinement_chart", ("--target", "0.05")), ("deviation_chart", ())):
             with self.subTest(script=script):
                 out = self.folder / f"{script}.png"
@@ -94,8 +97,13 @@ class Charts(unittest.TestCase):
 
     def test_what_cannot_be_drawn_is_one_line(self):
         (self.folder / "broken.json").write_text("{")
+        short = made_up_results()
+        for run in short["runs"]:
+            del run["settled"]
+        self.write(short, "short.json")
         (self.folder / "other.json").write_text('{"runs": [{}], "scenes": []}')
         for script, arguments in (("pareto_chart", (self.results, "--scene", "nowhere")),
+                                  ("stretch_chart", (self.folder / "short.json", "--scene", "curtain")),
                                   ("pareto_chart", (self.folder / "broken.json", "--scene", "curtain")),
                                   ("convergence_chart", (self.folder / "other.json", "--scene", "curtain")),
                                   ("compare_curves", (self.folder / "missing.json", "--scene", "curtain")),
