@@ -10,10 +10,10 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 # Told apart by colour-blind eyes and in print by how dark they are.
-COLOURS = {"h": "#56B4E9", "i": "#F0E442", "w": "#E69F00", "g": "#AA4499", "d": "#222222", "t": "#bbbbbb"}
+COLOURS = {"h": "#56B4E9", "s": "#009E73", "i": "#F0E442", "w": "#E69F00", "g": "#AA4499", "d": "#222222", "t": "#bbbbbb"}
 TITLES = {"apsl_defaults": "Ours, the defaults", "apsl": "Ours, the paper's setting",
-          "apsl_printed": "Ours, matrix as printed"}
-SHORT = {"h": "held", "i": "inaccurate: above 10 %", "w": "worse than no limiter", "g": "gained energy", "d": "diverged",
+          "apsl_printed": "Ours, matrix as printed", "apsl_ceiling": "Ours, stretch ceiling"}
+SHORT = {"h": "held", "s": "stretched: beyond the ceiling", "i": "inaccurate: above 10 %", "w": "worse than no limiter", "g": "gained energy", "d": "diverged",
          "t": "not finished"}
 
 

@@ -86,6 +86,14 @@ class Outcomes(unittest.TestCase):
         self.assertEqual(outcome.longest_edge(made_up([0.1], stretches=[None])), math.inf)
         self.assertEqual(outcome.longest_edge(made_up([0.1], status="diverged")), math.inf)
 
+    def test_a_ceiling_is_held_to(self):
+        without = made_up([0.3])
+        for change, longest, expected in ((0.05, 1.12, "h"), (0.05, 1.13, "s"), (0.2, 1.13, "i"), (0.05, None, "s")):
+            run = made_up([change], stretches=[longest]) | {"parameters": {"strain_limiting.stretch_ceiling": 1.1}}
+            with self.subTest(change=change, longest=longest):
+                self.assertEqual(outcome.outcome(run, without), expected)
+        self.assertEqual(outcome.outcome(made_up([0.05], stretches=[9.0]) | {"parameters": {}}, without), "h")
+
     def test_what_moves_by_itself(self):
         for scene, expected in (({}, False), ({"pins": [{"vertices": [0]}], "start": {"scale": [0, 0, 0]}}, False),
                                 ({"pins": [{"vertices": [0]}, {"box": {}, "motion": {"translate": {}}}]}, True),
