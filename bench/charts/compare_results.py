@@ -17,7 +17,8 @@ BASELINE_MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">")
 OUR_COLOURS = ("#0072B2", "#56B4E9", "#003f6b", "#4a90c2", "#7fb3d5", "#1f4e79", "#9ecae1")
 OUR_MARKERS = ("o", "s", "D", "^", "v", "P", "X", "*")
 # Apart from the other blues: small steps, and what the library does by default.
-OWN_COLOURS = {"apsl_small_steps": "#1a1aff", "apsl_chebyshev": "#00a0ff", "apsl_defaults": "#000000", "apsl_ceiling": "#5b2be0"}
+OWN_COLOURS = {"apsl_small_steps": "#1a1aff", "apsl_chebyshev": "#00a0ff", "apsl_defaults": "#000000",
+               "apsl_ceiling": "#5b2be0"}
 
 
 def results_parser(description, scene=False):

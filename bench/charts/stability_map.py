@@ -13,8 +13,8 @@ from matplotlib.patches import Patch
 COLOURS = {"h": "#56B4E9", "s": "#009E73", "i": "#F0E442", "w": "#E69F00", "g": "#AA4499", "d": "#222222", "t": "#bbbbbb"}
 TITLES = {"apsl_defaults": "Ours, the defaults", "apsl": "Ours, the paper's setting",
           "apsl_printed": "Ours, matrix as printed", "apsl_ceiling": "Ours, stretch ceiling"}
-SHORT = {"h": "held", "s": "stretched: beyond the ceiling", "i": "inaccurate: above 10 %", "w": "worse than no limiter", "g": "gained energy", "d": "diverged",
-         "t": "not finished"}
+SHORT = {"h": "held", "s": "stretched: beyond the ceiling", "i": "inaccurate: above 10 %",
+         "w": "worse than no limiter", "g": "gained energy", "d": "diverged", "t": "not finished"}
 
 
 def squares(axis, rows):

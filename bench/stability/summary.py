@@ -103,7 +103,8 @@ def gaining_energy(document):
 
 
 def table(documents):
-    lines = ["| map | points | no limiter holds | ours, the defaults | ours, the paper's | ours, printed | ours, the ceiling | best baseline "
+    lines = ["| map | points | no limiter holds | ours, the defaults | ours, the paper's | ours, printed "
+             "| ours, the ceiling | best baseline "
              "| a baseline holds, ours does not | ours worse than no limiter | ours gains energy "
              "| longest edge where ours holds (without a limiter) |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
     for document in documents:

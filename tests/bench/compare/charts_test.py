@@ -121,6 +121,7 @@ class Charts(unittest.TestCase):
         self.write(made_up_results(), "front.json")
         code, said, complained = self.run_chart("compare_summary", self.folder)
         self.assertEqual((code, complained), (0, ""))
+        self.assertNotIn("principal stretch", said)  # there is no file of it
         # 10 sub-steps take 2 ms: 4 % with the paper's setting, 1 % with rising α, which has 4 % after 1 ms at most.
         self.assertIn("a third of 4 % | 1 %, 4 times less", said)
         self.assertRegex(said, r"\| curtain \| the paper's: 1\.2, 10 \| 4 % \| .* \| 1\.00 \|")
@@ -131,6 +132,24 @@ class Charts(unittest.TestCase):
         self.assertEqual((level, title), (0.05, "pbd edges"))
         self.assertAlmostEqual(ours, 1.0)
         self.assertAlmostEqual(baseline, 2.5 * 4.0 ** (math.log(0.16 / 0.05) / math.log(4.0)))
+
+    def test_summary_says_who_holds_areas_and_stretch(self):
+        for name in ("curtain_8k", "refinement", "front"):
+            self.write(made_up_results(), f"{name}.json")
+        self.write(made_up_results(triangles=32768), "curtain_32k.json")
+        results = made_up_results()
+        ceiling = {"strain_limiting.stretch_ceiling": 1.1, "strain_limiting.sub_steps": 20}
+        results["runs"] += [made_up_run("curtain", "apsl_defaults", 2.0, 0.005, {"steps_per_frame": 1}),
+                            made_up_run("curtain", "apsl_ceiling", 6.0, 0.003, ceiling),
+                            made_up_run("curtain", "apsl_ceiling", 7.0, 0.004, {**ceiling, "strain_limiting.sub_steps": 30})]
+        self.write(results, "stretch.json")
+        code, said, complained = self.run_chart("compare_summary", self.folder)
+        self.assertEqual((code, complained), (0, ""))
+        self.assertIn("| ceiling 1.1, 20 sub-steps | 1 | 0.3 % | 1.006 | 1.009 | 3.00 | yes |", said)
+        self.assertIn("| ceiling 1.1, 30 sub-steps | 1 | 0.4 % | 1.008 | 1.012 | 3.50 | no |", said)
+        self.assertIn("| none | 1 | 60 % | 2.200 | 2.800 | – | no |", said)
+        for line in said.splitlines():
+            self.assertNotRegex(line.removeprefix("| |"), r"\| +\|", line)
 
 
 if __name__ == "__main__":
