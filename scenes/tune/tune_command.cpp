@@ -22,8 +22,9 @@ using Document = nlohmann::ordered_json;
 
 const auto to_the_end = [](const Trial&) { return false; };
 
-// 1.075 and 1.125, where short_number has three digits.
+// 1.075 and 1.125, where short_number has three digits. A cloth that is given up while it settles has none.
 std::string stretch_text(double stretch) {
+    if (stretch <= 1.0) return "-";
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", stretch);
     return text;
@@ -45,19 +46,20 @@ public:
         const float last = parameters.regularization;
         const bool has_tolerance = options.solver == Solver::conjugate_gradient;
         std::fprintf(stream_,
-                     "%5d  %-18s  %9d  %-11s  %7.4g  %6.4g  %9s  %10d  %7s  %6d  %9.3f %%  %7.4g  %10.3f  %8.3f  %s\n",
+                     "%5d  %-18s  %9d  %-11s  %7.4g  %6.4g  %9s  %10d  %7s  %6d  %9.3f %%  %7s  %10.3f  %8.3f  %s\n",
                      trial.settings.steps_per_frame, std::string(name_of(options.solver)).c_str(), parameters.sub_steps,
                      std::string(name_of(parameters.stepping)).c_str(),
                      parameters.first_regularization > 0.0f ? parameters.first_regularization : last, last,
                      has_tolerance ? short_number(parameters.tolerance).c_str() : "-", parameters.max_iterations,
                      ceiling_text(trial.settings.limiting).c_str(), trial.frames, 100.0 * trial.max_area_change,
-                     trial.max_stretch, 1e3 * trial.limiter_seconds, 1e3 * trial.seconds(), verdict(trial, goal));
+                     stretch_text(trial.max_stretch).c_str(), 1e3 * trial.limiter_seconds, 1e3 * trial.seconds(),
+                     verdict(trial, goal));
     }
 
     void add_without_limiter(const Trial& trial, const TuningGoal& goal) {
-        std::fprintf(stream_, "%5d  %-91s %7d  %9.3f %%  %7.4g  %10s  %8.3f  %s\n", trial.settings.steps_per_frame,
-                     "(no strain limiting)", trial.frames, 100.0 * trial.max_area_change, trial.max_stretch, "-",
-                     1e3 * trial.seconds(), verdict(trial, goal));
+        std::fprintf(stream_, "%5d  %-91s %7d  %9.3f %%  %7s  %10s  %8.3f  %s\n", trial.settings.steps_per_frame,
+                     "(no strain limiting)", trial.frames, 100.0 * trial.max_area_change,
+                     stretch_text(trial.max_stretch).c_str(), "-", 1e3 * trial.seconds(), verdict(trial, goal));
     }
 
 private:
