@@ -63,7 +63,8 @@ def draw_map(document):
     methods = document["methods"]
     columns = min(len(methods), 5)
     rows = -(-len(methods) // columns)
-    figure, axes = new_chart(columns, rows, width=1.2 + 2.0 * columns, height=1.2 + 1.9 * rows, sharex=True,
+    # Not so narrow that the legend is cut off.
+    figure, axes = new_chart(columns, rows, width=max(1.2 + 2.0 * columns, 7.2), height=1.2 + 1.9 * rows, sharex=True,
                              sharey=True, squeeze=False)
     for place, axis in enumerate(axes.flat):
         if place >= len(methods):
