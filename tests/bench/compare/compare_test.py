@@ -40,7 +40,7 @@ class Compare(unittest.TestCase):
 
     def compare(self, *arguments, code=0):
         done = subprocess.run([str(a) for a in (program, "compare", *arguments)], capture_output=True, text=True,
-                              timeout=60)
+                              timeout=120)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
