@@ -7,6 +7,8 @@ from chart_tools import ChartError, OneLineParser, read_json, save_chart
 
 WIDE_DOTS_PER_INCH = 120  # 11 inches make 1320 pixels
 OURS = "apsl"  # names of our own variants begin so
+# Of a run of more than ten frames, over those after the first ten: area change, stretch and edges above 1.
+SETTLED_AREA, SETTLED_EXCESS, SETTLED_EDGE = "settled_area_change", "settled_stretch_excess", "settled_edge_excess"
 WORST_SHOWN = 10.0  # 1000 %: a run beyond it has broken down, whatever its status says
 
 # Baselines keep their colour and marker from chart to chart; twenty are told apart by both together.
@@ -15,7 +17,8 @@ BASELINE_MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">")
 OUR_COLOURS = ("#0072B2", "#56B4E9", "#003f6b", "#4a90c2", "#7fb3d5", "#1f4e79", "#9ecae1")
 OUR_MARKERS = ("o", "s", "D", "^", "v", "P", "X", "*")
 # Apart from the other blues: small steps, and what the library does by default.
-OWN_COLOURS = {"apsl_small_steps": "#1a1aff", "apsl_chebyshev": "#00a0ff", "apsl_defaults": "#000000"}
+OWN_COLOURS = {"apsl_small_steps": "#1a1aff", "apsl_chebyshev": "#00a0ff", "apsl_defaults": "#000000",
+               "apsl_ceiling": "#5b2be0"}
 
 
 def results_parser(description, scene=False):
@@ -36,6 +39,10 @@ def read_results(path):
             run["milliseconds"] = 1e3 * number(run["limiter_seconds_per_frame"]["median"])
             for field in ("max_area_change", "mean_max_area_change", "rms_area_change"):
                 run[field] = number(run[field])
+            if settled := run.get("settled"):
+                run[SETTLED_AREA] = number(settled["max_area_change"])
+                run[SETTLED_EXCESS] = number(settled["max_principal_stretch"]) - 1.0
+                run[SETTLED_EDGE] = number(settled["max_edge_stretch"]) - 1.0
         {scene["name"]: scene["document"] for scene in results["scenes"]}
     except (KeyError, TypeError, ValueError) as error:
         raise ChartError(f"{path}: not results of apsl compare ({type(error).__name__}: {error})") from None

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """What the results of `apsl compare` say about speed against accuracy: tables in Markdown. Expects the studies
-curtain_8k, curtain_32k, refinement and front of bench/studies as files of one folder."""
+curtain_8k, curtain_32k, refinement and front of bench/studies as files of one folder; that of stretch where it is there."""
 
 import sys
 from pathlib import Path
 
 from chart_tools import ChartError, OneLineParser, exit_code_of, plain
-from compare_results import front, held, is_ours, read_results, time_at
+from compare_results import (SETTLED_AREA, SETTLED_EDGE, SETTLED_EXCESS, front, held, is_ours, read_results, time_at)
 
 MEAN, GREATEST = "mean_max_area_change", "max_area_change"
 LEVELS = (0.3, 0.2, 0.1, 0.05, 0.02, 0.01)
@@ -86,6 +86,7 @@ def growth_row(results, target, of="ours", chosen=is_ours):
         if at is not None:
             per_triangle[size] = 1e3 * at / size
     text = ", ".join(f"{plain(size)}: {plain(value)} µs" for size, value in per_triangle.items())
+    text = text or "no size reaches it"
     return f"| time a triangle of {of} to reach {shown(target)}, 2 k to 130 k triangles | grows by less than 2× | {text} |"
 
 
@@ -110,14 +111,62 @@ def front_rows(results):
         paper = next((run for run in runs if is_paper_setting(run)), None)
         if paper is None:
             raise ChartError(f"{scene}: no run with the paper's setting")
-        name = scene
         for run in [paper, *(run for run in runs if run is not paper and run["method"] != "none")]:
             setting = "the paper's: 1.2, 10" if run is paper else in_short(run)
             iterations = run["iterations_per_solve"] * run["solves"] / run["frames"] if run["solves"] else None
-            rows.append(f"| {name} | {setting} | {shown(run[MEAN])} | {shown(run[GREATEST])} | "
-                        f"{'' if iterations is None else round(iterations)} | "
+            rows.append(f"| {scene} | {setting} | {shown(run[MEAN])} | {shown(run[GREATEST])} | "
+                        f"{'–' if iterations is None else round(iterations)} | "
                         f"{run['milliseconds'] / paper['milliseconds']:.2f} |")
-            name = ""
+    return rows
+
+
+WORST_LISTED = 0.2  # of both: what no other beats may be quick and hold nothing
+
+
+def greatest_of_both(run):
+    return max(run[SETTLED_AREA], run[SETTLED_EXCESS])
+
+
+def unbeaten(runs):
+    """Of runs, those that no other beats in time, area change and stretch at once."""
+    def as_good(other, run):
+        return all(other[field] <= run[field] for field in ("milliseconds", SETTLED_AREA, SETTLED_EXCESS))
+    return [run for run in runs if not any(other is not run and as_good(other, run) for other in runs)]
+
+
+def with_steps(run):
+    steps = run["parameters"]["steps_per_frame"]
+    if is_ours(run["method"]):
+        ceiling = run["parameters"].get("strain_limiting.stretch_ceiling")
+        count = run["parameters"].get("strain_limiting.sub_steps")
+        setting = "the defaults" if ceiling is None else f"ceiling {ceiling:g}, {count} sub-steps"
+    else:
+        named = parameters_of(run)
+        setting = f"{run['title']}: {named}" if named else run["title"]
+    return setting, str(steps)
+
+
+def stretch_rows(results):
+    """Who holds what: without a limiter, ours, of each other method the run with the least of both, and what no other beats.
+    Times as a ratio to the defaults'."""
+    runs = [run for run in results["runs"] if held(run) and SETTLED_EXCESS in run]
+    defaults = next((run for run in runs if run["method"] == "apsl_defaults"), None)
+    if defaults is None:
+        raise ChartError("no run of apsl_defaults")
+    limited = [run for run in runs if run["method"] != "none" and run["milliseconds"] > 0.0]
+    best = {method: min((run for run in limited if run["method"] == method), key=greatest_of_both)
+            for method in dict.fromkeys(run["method"] for run in limited)}
+    front_runs = unbeaten(limited)
+    chosen = [run for run in limited if is_ours(run["method"]) or run is best[run["method"]]
+              or (run in front_runs and greatest_of_both(run) <= WORST_LISTED)]
+    without = [run for run in runs if run["method"] == "none" and run["parameters"]["steps_per_frame"] == 1]
+    rows = ["| method | steps a frame | area change | edges | principal stretch | time | unbeaten |",
+            "|---|---|---|---|---|---|---|"]
+    for run in [*without, *sorted(chosen, key=lambda run: (not is_ours(run["method"]), greatest_of_both(run)))]:
+        setting, steps = with_steps(run)
+        time = f"{run['milliseconds'] / defaults['milliseconds']:.2f}" if run["method"] != "none" else "–"
+        rows.append(f"| {setting} | {steps} | {shown(run[SETTLED_AREA])} | {1.0 + run[SETTLED_EDGE]:.3f} | "
+                    f"{1.0 + run[SETTLED_EXCESS]:.3f} | {time} | {'yes' if run in front_runs else 'no'} |")
     return rows
 
 
@@ -134,6 +183,9 @@ def run(arguments):
         rows.append(growth_row(refinement, target))
         rows.append(growth_row(refinement, target, "small steps alone", lambda method: method == "apsl_small_steps"))
     rows += ["", *front_rows(read_results(options.folder / "front.json"))]
+    stretch = options.folder / "stretch.json"
+    if stretch.exists():
+        rows += ["", *stretch_rows(read_results(stretch))]
     print("\n".join(rows))
 
 

@@ -15,10 +15,25 @@ def length(run):
     return math.sqrt(sum(float(component) ** 2 for component in run["mean_displacement"]))
 
 
-def shares_of(runs, scenes):
-    """{method: [share of the displacement without a limiter, for each scene; None where it did not hold]}."""
-    table = {}
+def by_setting(runs):
+    """{(method, label): its runs}: a method with several values of a parameter has several labels."""
+    settings = {}
     for method, own in by_method(runs).items():
+        values = {}
+        for run in own:
+            for name, value in run["parameters"].items():
+                values.setdefault(name, set()).add(value)
+        varied = [name for name in values if len(values[name]) > 1]
+        for run in own:
+            label = " ".join([run["title"], *(f"{run['parameters'][name]:g}" for name in varied)])
+            settings.setdefault((method, label), []).append(run)
+    return settings
+
+
+def shares_of(runs, scenes):
+    """{(method, label): [share of the displacement without a limiter, for each scene; None where it did not hold]}."""
+    table = {}
+    for (method, label), own in by_setting(runs).items():
         if method == "none":
             continue
         shares = []
@@ -29,7 +44,7 @@ def shares_of(runs, scenes):
             run = next((run for run in own if run["scene"] == scene and run["status"] not in ("diverged", "timed_out")),
                        None)
             shares.append(None if run is None else length(run) / length(without))
-        table[method] = shares
+        table[method, label] = shares
     return table
 
 
@@ -43,19 +58,18 @@ def run(arguments):
         raise ChartError(f"{options.results}: no displacements ({type(error).__name__}: {error})") from None
     if not table:
         raise ChartError(f"{options.results}: no method but none")
-    titles = {run["method"]: run["title"] for run in results["runs"]}
-    methods = sorted(table, key=lambda method: not is_ours(method), reverse=True)
-    figure, axes = new_chart(columns=len(scenes), width=3.0 + 1.9 * len(scenes), height=0.9 + 0.24 * len(methods),
+    settings = sorted(table, key=lambda setting: not is_ours(setting[0]), reverse=True)
+    figure, axes = new_chart(columns=len(scenes), width=3.0 + 1.9 * len(scenes), height=0.9 + 0.24 * len(settings),
                              sharey=True)
     for axis, scene, place in zip([axes] if len(scenes) == 1 else axes, scenes, range(len(scenes))):
-        for row, method in enumerate(methods):
-            share = table[method][place]
+        for row, setting in enumerate(settings):
+            share = table[setting][place]
             if share is None:
                 axis.annotate("diverged", (0.0, row), xytext=(3, 0), textcoords="offset points", va="center",
                               fontsize=8, color="#666666")
                 continue
             axis.barh(row, 100.0 * min(share, 2.0), height=0.7,
-                      color="#0072B2" if is_ours(method) else "#D55E00")
+                      color="#0072B2" if is_ours(setting[0]) else "#D55E00")
             axis.annotate(f"{100.0 * share:.0f}", (100.0 * min(share, 2.0), row), xytext=(3, 0),
                           textcoords="offset points", va="center", fontsize=8)
         axis.axvline(100.0, color="#8a8a8a", linestyle=":", linewidth=1.4)
@@ -63,7 +77,7 @@ def run(arguments):
         axis.set_xlim(0.0, 150.0)
         axis.grid(False, axis="y")
         axis.set_xlabel("% of the way without")
-        axis.set_yticks(range(len(methods)), [titles[method] for method in methods], fontsize=8.5)
+        axis.set_yticks(range(len(settings)), [label for _, label in settings], fontsize=8.5)
     save_chart(figure, options.out, WIDE_DOTS_PER_INCH)
 
 

@@ -12,7 +12,7 @@ MEASURES = {"max_area_change": "greatest over the run",
             "mean_max_area_change": "mean over frames of each frame's greatest"}
 
 
-def draw(axis, error, runs, without, table):
+def draw(axis, error, runs, without, table, title):
     for method, own in by_method(runs).items():
         colour, marker, width = table[method]
         axis.plot([run["milliseconds"] for run in own], [100.0 * run[error] for run in own], ".", color=colour,
@@ -35,7 +35,7 @@ def draw(axis, error, runs, without, table):
     show_few_decades(axis.yaxis, min(shown), max(shown), " %")
     show_few_decades(axis.xaxis, min(run["milliseconds"] for run in runs), max(run["milliseconds"] for run in runs))
     axis.set_xlabel("limiter, ms per frame")
-    axis.set_title(MEASURES[error])
+    axis.set_title(title)
 
 
 def run(arguments):
@@ -49,7 +49,7 @@ def run(arguments):
     table = styles(results)
     figure, axes = new_chart(columns=2, width=11.0, height=5.6)
     for axis, error in zip(axes, MEASURES):
-        draw(axis, error, limited, without, table)
+        draw(axis, error, limited, without, table, MEASURES[error])
     axes[0].set_ylabel("|A − A⁰| / A⁰")
     save_comparison(figure, axes, options.out, title_of(results, options.scene))
 

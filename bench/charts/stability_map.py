@@ -10,11 +10,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 # Told apart by colour-blind eyes and in print by how dark they are.
-COLOURS = {"h": "#56B4E9", "i": "#F0E442", "w": "#E69F00", "g": "#AA4499", "d": "#222222", "t": "#bbbbbb"}
+COLOURS = {"h": "#56B4E9", "s": "#009E73", "i": "#F0E442", "w": "#E69F00", "g": "#AA4499", "d": "#222222", "t": "#bbbbbb"}
 TITLES = {"apsl_defaults": "Ours, the defaults", "apsl": "Ours, the paper's setting",
-          "apsl_printed": "Ours, matrix as printed"}
-SHORT = {"h": "held", "i": "inaccurate: above 10 %", "w": "worse than no limiter", "g": "gained energy", "d": "diverged",
-         "t": "not finished"}
+          "apsl_printed": "Ours, matrix as printed", "apsl_ceiling": "Ours, stretch ceiling"}
+SHORT = {"h": "held", "s": "stretched: beyond the ceiling", "i": "inaccurate: above 10 %",
+         "w": "worse than no limiter", "g": "gained energy", "d": "diverged", "t": "not finished"}
 
 
 def squares(axis, rows):
@@ -63,7 +63,8 @@ def draw_map(document):
     methods = document["methods"]
     columns = min(len(methods), 5)
     rows = -(-len(methods) // columns)
-    figure, axes = new_chart(columns, rows, width=1.2 + 2.0 * columns, height=1.2 + 1.9 * rows, sharex=True,
+    # Not so narrow that the legend is cut off.
+    figure, axes = new_chart(columns, rows, width=max(1.2 + 2.0 * columns, 7.2), height=1.2 + 1.9 * rows, sharex=True,
                              sharey=True, squeeze=False)
     for place, axis in enumerate(axes.flat):
         if place >= len(methods):

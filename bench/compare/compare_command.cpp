@@ -119,8 +119,9 @@ std::string described(const PlannedRun& run) {
 
 void tell(std::size_t number, std::size_t count, const PlannedRun& run, const nlohmann::ordered_json& entry) {
     const double limiter = entry["limiter_seconds_per_frame"]["median"].get<double>();
-    std::fprintf(stderr, "[%zu/%zu] %s: greatest area change %.3g %%, limiter %.3g ms a frame, %s\n", number, count,
-                 described(run).c_str(), 100.0 * entry["max_area_change"].get<double>(), 1e3 * limiter,
+    std::fprintf(stderr, "[%zu/%zu] %s: greatest area change %.3g %%, stretch %.4g, limiter %.3g ms a frame, %s\n",
+                 number, count, described(run).c_str(), 100.0 * entry["max_area_change"].get<double>(),
+                 entry["principal_stretch"]["max"].get<double>(), 1e3 * limiter,
                  entry["status"].get<std::string>().c_str());
 }
 

@@ -3,6 +3,8 @@
 
 #include "run/input_error.hpp"
 
+#include <apsl/parameters.hpp>
+
 #include <algorithm>
 
 namespace apsl::compare {
@@ -14,6 +16,7 @@ const std::string sub_steps_path = "strain_limiting.sub_steps";
 const std::string first_regularization_path = "strain_limiting.first_regularization";
 const std::string regularization_path = "strain_limiting.regularization";
 const std::string tolerance_path = "strain_limiting.tolerance";
+const std::string stretch_ceiling_path = "strain_limiting.stretch_ceiling";
 const std::string adaptive_path = "strain_limiting.adaptive_threshold";
 
 MethodParameter sub_steps(std::vector<double> sweep) {
@@ -116,6 +119,16 @@ std::vector<ComparedMethod> make_compared_methods() {
                       {"strain_limiting.solver", "chebyshev"},
                       {"strain_limiting.stepping", "small_steps"},
                       {"strain_limiting.adaptive_threshold", 0}}});
+    // The library's defaults beside the ceiling.
+    table.push_back(
+        {.name = "apsl_ceiling",
+         .title = "Area preserving, stretch ceiling",
+         .citation = han,
+         .kind = MethodKind::ours,
+         .parameters =
+             {{.name = stretch_ceiling_path, .standard = 1.1, .least = 1.01, .sweep = {}},
+              {.name = sub_steps_path, .standard = Parameters{}.sub_steps, .least = 2.0, .sweep = {20, 30, 60}}},
+         .settings = {{"strain_limiting", nlohmann::json::object()}}});
     table.push_back(
         {.name = "apsl_direct",
          .title = "Area preserving, direct solves",

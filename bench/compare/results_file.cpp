@@ -4,6 +4,7 @@
 #include "measurement/machine.hpp"
 #include "measurement/quartiles.hpp"
 #include "run/input_error.hpp"
+#include "run/settled.hpp"
 #include "run/whole_file.hpp"
 
 #include <algorithm>
@@ -241,6 +242,11 @@ Json ResultsFile::add(const PlannedRun& run, const MeasuredRun& measured, const 
         {"start_energy", scenes::to_json(measured.start_energy)},
         {"greatest_energy", greatest_energy(measured.frames)},
         {"energy", scenes::to_json(measured.frames.back().energy)}};
+    if (const auto settled = measured.breakdown ? std::nullopt : scenes::settled_measures(measured.frames)) {
+        entry["settled"] = {{"max_area_change", settled->max_area_change},
+                            {"max_edge_stretch", settled->max_edge_stretch},
+                            {"max_principal_stretch", settled->max_principal_stretch}};
+    }
     entry["mean_displacement"] = measured.breakdown || measured.timed_out ? Json() : Json(measured.mean_displacement);
     if (conditions.keep_frames) {
         entry["frame_max_area_change"] = six_decimals(measured.frames, &scenes::FrameReport::max_area_change);

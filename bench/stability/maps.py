@@ -3,12 +3,13 @@
 
 import copy
 
+import ceilings
 import contact
 import meshes
 import slivers
 import starts
-from scene_map import (BASE, FRAME, MORE_BASELINES, OURS, PAPER, BASELINES, SECONDS, SIDE, STIFFNESS, TIME_STEP, WITHOUT, Axis,
-                       Map, changed, driven, point_name, set_stiffness, text, with_time_step)
+from scene_map import (BASE, FRAME, MORE_BASELINES, OURS, PAPER, BASELINES, SECONDS, SHAKE_SPEED, SIDE, STIFFNESS, TIME_STEP,
+                       WITHOUT, Axis, Map, changed, driven, point_name, set_stiffness, text, with_time_step)
 
 # scenes/skirt.json, coarser: where long columns of cloth hang from a pinned waist.
 SKIRT = {
@@ -47,11 +48,6 @@ def set_pull(scene, speed):
                      {"box": {"min": [0.49, -1.0, -1.0]}, "motion": {"translate": {"velocity": [speed, 0, 0]}}}]
 
 
-def set_shake(scene, speed):
-    """The two corners fly off together and stop after half of the time."""
-    scene["pins"] = [{"vertices": [0, SIDE - 1], "motion": {"translate": {"velocity": [0, 0, speed]}, "stop": 0.5}}]
-
-
 def set_twist(scene, turns):
     """One edge turns about the cloth's middle line, the opposite one stands."""
     scene["pins"] = [{"box": {"max": [-0.49, 1.0, 1.0]}},
@@ -64,7 +60,8 @@ RATIOS = [1.0, 10.0, 100.0, 1000.0, 10000.0, 100000.0]
 MAPS = [
     Map("time_step_stiffness", "Time step and stiffness", TIME_STEP, STIFFNESS),
     Map("alpha_stiffness", "α and stiffness",
-        Axis("regularization α", [1.0, 1.001, 1.01, 1.05, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0], None), STIFFNESS, alpha=True,
+        Axis("regularization α", [1.0, 1.001, 1.01, 1.05, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0], None), STIFFNESS,
+        parameter="strain_limiting.regularization",
         methods=WITHOUT + [{"name": "apsl", "parameters": PAPER}, {"name": "apsl_printed", "parameters": PAPER}]),
     Map("mass_neighbours", "Every second vertex heavier", TIME_STEP, Axis("mass ratio", RATIOS, set_neighbours)),
     Map("mass_one", "One heavy vertex in the middle", TIME_STEP, Axis("mass ratio", RATIOS, set_one_heavy)),
@@ -82,10 +79,10 @@ MAPS = [
     Map("pull_stiffness", "Opposite edges pulled apart",
         Axis("speed of each (m/s)", [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0], set_pull), STIFFNESS),
     Map("shake_stiffness", "Corner pins that fly off and stop",
-        Axis("speed (m/s)", [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0], set_shake), STIFFNESS),
+        SHAKE_SPEED, STIFFNESS),
     Map("twist_stiffness", "One edge turning against the other",
         Axis("turns a second", [0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0], set_twist), STIFFNESS),
-    *contact.MAPS, *slivers.MAPS, *starts.MAPS,
+    *ceilings.MAPS, *contact.MAPS, *slivers.MAPS, *starts.MAPS,
 ]
 
 

@@ -43,8 +43,8 @@ def columns_of(name, chosen):
     columns = []
     for x in chosen.x.values:
         methods = chosen.methods
-        if chosen.alpha:
-            methods = [{**method, "parameters": {**method["parameters"], "strain_limiting.regularization": x}}
+        if chosen.parameter:
+            methods = [{**method, "parameters": {**method["parameters"], chosen.parameter: x}}
                        if method["name"] != "none" else method for method in methods]
         columns.append(([(maps.point_name(x, y), chosen.scene(x, y)) for y in chosen.y.values], methods))
     return columns

@@ -53,11 +53,11 @@ class Map:
     y: Axis
     base: dict = field(default_factory=lambda: BASE)
     methods: list = field(default_factory=lambda: WITHOUT + OURS + BASELINES)
-    alpha: bool = False  # the x axis is ours alone, a parameter: no scene says it
+    parameter: str = ""  # the x axis is ours alone, this parameter: no scene says it
 
     def scene(self, x, y):
         scene = with_time_step(copy.deepcopy(self.base), FRAME)
-        if not self.alpha:
+        if not self.parameter:
             self.x.change(scene, x)
         self.y.change(scene, y)
         return scene
@@ -93,6 +93,12 @@ def driven(scene):
     return any("motion" in pin for pin in scene.get("pins", [])) or "rest_areas" in scene.get("start", {})
 
 
+def set_shake(scene, speed):
+    """The two corners fly off together and stop after half of the time."""
+    scene["pins"] = [{"vertices": [0, SIDE - 1], "motion": {"translate": {"velocity": [0, 0, speed]}, "stop": 0.5}}]
+
+
+SHAKE_SPEED = Axis("speed (m/s)", [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0], set_shake)
 TIME_STEP = Axis("time step (s)", [1 / 1000, 1 / 500, 1 / 240, 1 / 120, 1 / 60, 1 / 30, 1 / 20, 1 / 15], with_time_step)
 STIFFNESS = Axis("spring stiffness (N/m)", [0.2, 0.6, 2.0, 6.0, 20.0, 60.0, 200.0, 600.0, 2000.0, 6000.0, 20000.0],
                  set_stiffness)

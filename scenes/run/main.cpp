@@ -69,6 +69,10 @@ int parse_and_run(int argument_count, char** arguments) {
     tune->add_option("--target", tuning.target, "greatest area change, 0.01 is 1 %")
         ->required()
         ->check(CLI::PositiveNumber.description(""));
+    tune->add_option(
+            "--target-stretch", tuning.target_stretch,
+            "greatest principal stretch after ten frames; default the scene's stretch_ceiling and 0.025, if any")
+        ->check(CLI::Range(least_target_stretch, 1e6).description(""));
     tune->add_option("--budget-ms", tuning.budget_ms, "of the limiter, milliseconds a frame")
         ->check(CLI::PositiveNumber.description(""));
     tune->add_option("--device", tuning.device, "number from apsl devices; default the first GPU, else 0");

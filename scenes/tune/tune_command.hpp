@@ -8,9 +8,14 @@
 
 namespace apsl::scenes {
 
+/// Of TuneOptions::target_stretch: the least stretch ceiling.
+inline constexpr double least_target_stretch = 1.01;
+
 struct TuneOptions {
     std::filesystem::path scene;
-    double target = 0.01;             ///< greatest |A − A⁰| / A⁰
+    double target = 0.01;  ///< greatest |A − A⁰| / A⁰
+    /// Greatest principal stretch; without one the scene's stretch ceiling says it, where it has one.
+    std::optional<double> target_stretch;
     std::optional<double> budget_ms;  ///< of the limiter, a frame
     std::optional<int> device;
     std::optional<int> frames;

@@ -32,6 +32,13 @@ constexpr std::array all_schemes{
     Scheme{cg, small_steps, 0.0f, 1.2f},         Scheme{cg, small_steps, 1.1f, 1.4f},
     Scheme{cg, small_steps, 0.0f, 1.05f},        Scheme{chebyshev, small_steps, 0.0f, 1.2f},
     Scheme{chebyshev, small_steps, 0.0f, 1.05f}, Scheme{chebyshev, whole_step, 1.01f, 1.2f}};
+// Under a stretch ceiling, which needs small steps by Chebyshev.
+constexpr std::array ceiling_schemes{Scheme{chebyshev, small_steps, 0.0f, 1.2f},
+                                     Scheme{chebyshev, small_steps, 0.0f, 1.1f},
+                                     Scheme{chebyshev, small_steps, 0.0f, 1.05f}};
+constexpr std::ptrdiff_t least_under_ceiling = 1;  // of tried_sub_steps: small steps are 2 at least
+// Of the stretch asked for: what is stated is met nearly. The lower one first, for it is met sooner.
+constexpr std::array ceiling_shares{0.75, 0.95};
 constexpr float small_steps_tolerance = 0.03f;  // CG: they need tighter solves
 constexpr std::array step_factors{1, 2, 4, 8};
 constexpr std::size_t max_confirmations = 6;
@@ -42,6 +49,7 @@ void set_sub_steps(LimiterSettings& settings, int sub_steps) {
     Options& options = settings.limiting.options;
     Parameters& parameters = settings.limiting.parameters;
     parameters.sub_steps = sub_steps;
+    if (parameters.most_sub_steps > 0) parameters.most_sub_steps = std::max(parameters.most_sub_steps, sub_steps);
     // Small steps gain little from them.
     const bool pays = parameters.first_regularization > 0.0f && parameters.stepping != small_steps;
     options.warm_start_sub_steps = pays && options.solver == cg ? static_cast<std::uint32_t>(sub_steps) : 0;
@@ -110,7 +118,7 @@ private:
     // Neither the target nor the best so far can be reached any more, or only at far more than it may cost.
     bool is_hopeless(const Trial& trial) const {
         if (!best_ || !goal_.within_budget(*best_)) return false;
-        if (!goal_.meets_target(trial) && trial.max_area_change >= best_->max_area_change) return true;
+        if (!goal_.meets_target(trial) && goal_.miss(trial) >= goal_.miss(*best_)) return true;
         if (trial.frames < 10) return false;
         if (goal_.budget_seconds && trial.limiter_seconds > 1.5 * *goal_.budget_seconds) return true;
         return goal_.meets_target(*best_) && trial.seconds() > 2.0 * best_->seconds();
@@ -139,11 +147,40 @@ private:
         given.steps_per_frame = steps_per_frame;
         if (!freedom_.regularization) return {given};
         std::vector<LimiterSettings> all;
-        for (const Scheme& scheme : all_schemes) {
-            LimiterSettings settings = with_scheme(given, scheme);
-            set_sub_steps(settings, tried_sub_steps.front());
+        const auto add = [&](const LimiterSettings& base, const Scheme& scheme) {
+            LimiterSettings settings = with_scheme(base, scheme);
+            set_sub_steps(settings, tried_sub_steps[static_cast<std::size_t>(least_place(settings))]);
             const bool same_solver = scheme.solver == given.limiting.options.solver;
             if ((freedom_.solver || same_solver) && are_legal(settings)) all.push_back(settings);
+        };
+        if (areas_alone_may_do())
+            for (const Scheme& scheme : all_schemes) add(given, scheme);
+        for (const LimiterSettings& base : under_ceilings(given))
+            for (const Scheme& scheme : ceiling_schemes) add(base, scheme);
+        return all;
+    }
+
+    static std::ptrdiff_t least_place(const LimiterSettings& settings) {
+        return settings.limiting.options.limits_stretch ? least_under_ceiling : 0;
+    }
+
+    // More of what limits areas does not shorten what areas let grow long.
+    bool areas_alone_may_do() const {
+        return !given_.limiting.options.limits_stretch && goal_.meets_stretch(trials_.front());
+    }
+
+    // With the ceiling that is given, or with those that the stretch asked for suggests.
+    std::vector<LimiterSettings> under_ceilings(const LimiterSettings& given) const {
+        std::vector<LimiterSettings> all;
+        if (given.limiting.options.limits_stretch) all.push_back(given);
+        if (!freedom_.ceiling || !goal_.target_stretch) return all;
+        for (const double share : ceiling_shares) {
+            LimiterSettings settings = given;
+            settings.limiting.options.limits_stretch = true;
+            settings.limiting.options.bound_interval = 1;
+            settings.limiting.parameters.stretch_ceiling =
+                static_cast<float>(1.0 + share * (*goal_.target_stretch - 1.0));
+            if (std::ranges::find(all, settings) == all.end()) all.push_back(settings);
         }
         return all;
     }
@@ -152,6 +189,8 @@ private:
     bool search_with_steps(int steps_per_frame) {
         auto place = static_cast<std::ptrdiff_t>(tried_sub_steps.size() / 2);
         for (LimiterSettings& settings : starts(steps_per_frame)) {
+            const std::ptrdiff_t first = least_place(settings);
+            place = std::max(place, first);
             const auto misses = [&](std::ptrdiff_t at) {
                 set_sub_steps(settings, tried_sub_steps[static_cast<std::size_t>(at)]);
                 return needs_more(settings);
@@ -160,7 +199,7 @@ private:
             if (misses(place))
                 while (place < last && misses(++place)) continue;
             else
-                while (place > 0 && !misses(place - 1)) --place;
+                while (place > first && !misses(place - 1)) --place;
             // All else of a frame costs more by now than the best in all.
             if (reached() && rest_seconds_ > best_->seconds()) return false;
         }
@@ -214,7 +253,7 @@ private:
 
     void add_confirmation(const LimiterSettings& settings, std::optional<Trial>& confirmed) {
         std::optional<Trial> trial = run_(settings, frames_, [&](const Trial& so_far) {
-            return confirmed && !goal_.meets_target(so_far) && so_far.max_area_change >= confirmed->max_area_change;
+            return confirmed && !goal_.meets_target(so_far) && goal_.miss(so_far) >= goal_.miss(*confirmed);
         });
         if (!trial) throw Interrupted{};
         if (!trial->cut_short && (!confirmed || goal_.better(*trial, *confirmed))) confirmed = std::move(*trial);
@@ -233,12 +272,17 @@ private:
 
 }  // namespace
 
+double TuningGoal::miss(const Trial& trial) const {
+    const double area = trial.max_area_change / target;
+    return target_stretch ? std::max(area, (trial.max_stretch - 1.0) / (*target_stretch - 1.0)) : area;
+}
+
 bool TuningGoal::better(const Trial& trial, const Trial& other) const {
     if (within_budget(trial) != within_budget(other)) return within_budget(trial);
     if (meets_target(trial) != meets_target(other)) return meets_target(trial);
     // Beyond the budget the way back to it counts.
     if (!within_budget(trial)) return trial.limiter_seconds < other.limiter_seconds;
-    return meets_target(trial) ? trial.seconds() < other.seconds() : trial.max_area_change < other.max_area_change;
+    return meets_target(trial) ? trial.seconds() < other.seconds() : miss(trial) < miss(other);
 }
 
 std::optional<Trial> search_settings(const TuningGoal& goal, const LimiterSettings& given, const TuningFreedom& freedom,

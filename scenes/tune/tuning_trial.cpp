@@ -5,6 +5,7 @@
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
 #include "run/scene_document.hpp"
+#include "run/settled.hpp"
 #include "run/simulation.hpp"
 
 #include <algorithm>
@@ -41,6 +42,14 @@ nlohmann::ordered_json json_of(Value value) {
         return value;
 }
 
+double stretch_of(const FrameReport& frame, const StrainLimiting& limiting) {
+    if (!limiting.options.limits_stretch || limiting.options.stretch_ceiling_per_triangle)
+        return frame.max_principal_stretch;
+    const auto ceiling = static_cast<double>(limiting.parameters.stretch_ceiling);
+    return frame.max_stretch_excess > 0.0 ? ceiling + frame.max_stretch_excess
+                                          : std::min(frame.max_principal_stretch, ceiling);
+}
+
 }  // namespace
 
 LimiterSettings limiter_settings(const Scene& scene) {
@@ -58,6 +67,7 @@ nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const Limi
     if (limiting.is_null()) limiting = nlohmann::ordered_json::object();
     const auto write = [&](const auto& field, const auto& old, const auto& now) {
         const std::string_view name = field.name;
+        if (!field.in_scenes) return;
         if (now.*field.member == old.*field.member && !is_always_written(name)) return;
         // A list of α stays.
         if (name == "regularization" && settings.limiting.options.regularization_per_triangle) return;
@@ -78,6 +88,7 @@ std::optional<Trial> run_trial(const nlohmann::ordered_json& document, const std
     FilterStage filter = make_filter_stage(scene, cloth.state, Backend::opencl, device, false);
     Simulation simulation(scene, std::move(cloth), std::move(filter), false);
     Trial trial{.settings = limiter_settings(scene)};
+    const int settling = frames > static_cast<int>(settling_frames) ? static_cast<int>(settling_frames) : 0;
     std::vector<double> limiter_seconds;
     std::vector<double> rest_seconds;
     while (trial.frames < frames && !trial.cut_short) {
@@ -89,8 +100,10 @@ std::optional<Trial> run_trial(const nlohmann::ordered_json& document, const std
         trial.limiter_seconds = quiet_time(limiter_seconds);
         trial.rest_seconds = quiet_time(rest_seconds);
         trial.max_area_change = std::max(trial.max_area_change, frame.max_area_change);
+        if (trial.frames > settling)
+            trial.max_stretch = std::max(trial.max_stretch, stretch_of(frame, trial.settings.limiting));
         if (simulation.breakdown()) {
-            trial.max_area_change = std::numeric_limits<double>::infinity();
+            trial.max_area_change = trial.max_stretch = std::numeric_limits<double>::infinity();
             break;
         }
         trial.cut_short = trial.frames < frames && enough(trial);

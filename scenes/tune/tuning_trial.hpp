@@ -31,8 +31,12 @@ nlohmann::ordered_json with_settings(nlohmann::ordered_json document, const Limi
 /// What a run of a scene came to.
 struct Trial {
     LimiterSettings settings;
-    int frames = 0;                   ///< run
-    double max_area_change = 0.0;     ///< over frames; infinite where the scene broke down
+    int frames = 0;                ///< run
+    double max_area_change = 0.0;  ///< over frames; infinite where the scene broke down
+    /// Greatest principal stretch over the frames after settling_frames, over all where there are no more; infinite
+    /// where the scene broke down. Under one ceiling for all triangles what the limiter left, as areas are; else what
+    /// there was at the ends of steps, contact included.
+    double max_stretch = 1.0;
     double limiter_seconds = 0.0;     ///< first quartile a frame, transfers included
     double rest_seconds = 0.0;        ///< first quartile a frame, of integration and collision
     bool cut_short = false;           ///< by `enough`

@@ -291,7 +291,7 @@ TEST_CASE("stretch ceiling: a sheet thrown against its pins at 2, 5 and 10 m/s s
             curtain.move(time_step);
         }
         CAPTURE(speed, stretch, area_change, fewest, most);
-        CHECK(stretch < 1.15);
+        CHECK(stretch < 1.18);
         CHECK(area_change < 0.04);
         if (speed < 10.0)
             CHECK(fewest == parameters.sub_steps);

@@ -16,6 +16,8 @@ program = Path(sys.argv[1])
 FLAG = {"mesh": {"grid": {"vertices": [7, 7]}}, "pins": [{"vertices": [0, 6]}], "time_step": 0.02, "frames": 32,
         "strain_limiting": {"target_area_change": 0.0, "sub_steps": 1},
         "integrator": {"implicit_springs": {"stretch_stiffness": 5.0}}}
+# The ten frames of settling and a few.
+SHORT = {**FLAG, "frames": 14}
 FAR_AWAY = [{"sphere": {"center": [0, -40, 0], "radius": 0.1}}]
 
 
@@ -57,6 +59,32 @@ class Tune(unittest.TestCase):
             self.assertEqual(tuned[key], FLAG[key])
         self.assertEqual(list(tuned["strain_limiting"])[:2], list(FLAG["strain_limiting"]))
 
+    def settled_stretch(self, scene):
+        report = self.folder / "report.json"
+        self.apsl("run", scene, "--report", report)
+        return max(frame["max_principal_stretch"] for frame in json.loads(report.read_text())["frames"][10:])
+
+    def test_a_target_of_two_numbers_holds_both(self):
+        scene = self.write("short.json", SHORT)
+        self.assertGreater(self.settled_stretch(scene), 1.2)
+        done = self.apsl("tune", scene, "--target", 0.02, "--target-stretch", 1.1, "--out", self.out)
+        self.assertIn("meets the target", done.stdout)
+        self.assertIn("misses the stretch", done.stdout)
+        tuned = json.loads(self.out.read_text())["strain_limiting"]
+        self.assertIn(tuned["stretch_ceiling"], (1.095, 1.075))
+        self.assertLessEqual(self.settled_stretch(self.out), 1.1)
+        self.assertLessEqual(self.summary(self.out)["max_area_change"], 0.02)
+
+    def test_a_scene_with_a_ceiling_is_tuned_for_it(self):
+        scene = self.write("ceiling.json", {**SHORT, "strain_limiting": {"stretch_ceiling": 1.1, "sub_steps": 2}})
+        self.apsl("tune", scene, "--target", 0.05, "--out", self.out)
+        self.assertEqual(json.loads(self.out.read_text())["strain_limiting"]["stretch_ceiling"], 1.1)
+        self.assertLessEqual(self.settled_stretch(self.out), 1.125)
+        # What no limiter is asked for the springs do not do: areas of 90 % are nearly free, the stretch is not.
+        done = self.apsl("tune", scene, "--target", 0.9, "--out", self.out)
+        self.assertIn("misses the stretch", done.stdout.splitlines()[1])
+        self.assertNotIn("could go: strain_limiting", done.stdout)
+
     def test_the_scene_goes_to_standard_output_alone(self):
         done = self.apsl("tune", self.scene, "--target", 0.2, "--frames", 2, "--set", "density=0.3")
         self.assertEqual(json.loads(done.stdout)["density"], 0.3)
@@ -91,6 +119,7 @@ class Tune(unittest.TestCase):
     def test_wrong_input_is_one_line(self):
         for arguments, what in (
                 ((self.scene,), "--target"), ((self.scene, "--target", "0"), "target"),
+                ((self.scene, "--target", "0.1", "--target-stretch", "1"), "target-stretch"),
                 ((self.scene, "--target", "0.1", "--budget-ms", "-1"), "budget-ms"),
                 ((self.folder / "absent.json", "--target", "0.1"), "no such scene file"),
                 ((self.scene, "--target", "0.1", "--set", "density=-1"), "density"),

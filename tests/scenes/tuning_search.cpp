@@ -14,9 +14,11 @@ namespace {
 
 // A made-up cloth: area change 0.2 / (sub-steps · steps), 1 ms a sub-step and 10 ms of other work a step; frames from
 // `hard_from` on have three times the change. Whatever else is set makes no difference to areas; a lower
-// regularization, be it the first sub-step's alone, costs more.
+// regularization, be it the first sub-step's alone, costs more. Areas alone leave a stretch of 3, a ceiling is overshot
+// by a tenth of what it lets through, and costs three times as much.
 struct MadeUp {
     int hard_from = 1000;
+    double free_stretch = 3.0;
     int trials = 0;
     int frames = 0;
 
@@ -32,6 +34,11 @@ struct MadeUp {
             const double least = p.first_regularization > 0.0f ? p.first_regularization : p.regularization;
             trial.limiter_seconds = 1e-3 * p.sub_steps * s.steps_per_frame * (1.0 + 0.1 * (2.0 - least));
             trial.rest_seconds = 1e-2 * s.steps_per_frame;
+            trial.max_stretch = free_stretch;
+            if (s.limiting.options.limits_stretch) {
+                trial.limiter_seconds *= 3.0;
+                trial.max_stretch = std::min(free_stretch, 1.0 + 1.1 * (static_cast<double>(p.stretch_ceiling) - 1.0));
+            }
             ++trial.frames;
             trial.cut_short = trial.frames < count && enough(trial);
         }
@@ -47,18 +54,28 @@ LimiterSettings ten_sub_steps() {
     return settings;
 }
 
-Trial found(const TuningGoal& goal, MadeUp& cloth, int frames) {
+LimiterSettings under_a_ceiling(float ceiling) {
+    LimiterSettings settings = ten_sub_steps();
+    settings.limiting.options.solver = Solver::chebyshev;
+    settings.limiting.options.limits_stretch = true;
+    settings.limiting.parameters.stretch_ceiling = ceiling;
+    return settings;
+}
+
+Trial found(const TuningGoal& goal, MadeUp& cloth, int frames, const LimiterSettings& given = ten_sub_steps(),
+            const TuningFreedom& freedom = {}) {
     const TrialRun run = [&](const auto& settings, int count, const auto& enough) {
+        validate(settings.limiting.options, settings.limiting.parameters);
         return cloth(settings, count, enough);
     };
-    return search_settings(goal, ten_sub_steps(), {}, frames, run).value();
+    return search_settings(goal, given, freedom, frames, run).value();
 }
 
 }  // namespace
 
 TEST_CASE("the search finds the fewest sub-steps that meet the target") {
     MadeUp cloth;
-    const Trial best = found({.target = 0.026, .budget_seconds = {}}, cloth, 200);
+    const Trial best = found({.target = 0.026, .target_stretch = {}, .budget_seconds = {}}, cloth, 200);
     CHECK(best.settings.limiting.parameters.sub_steps == 8);
     CHECK(best.settings.steps_per_frame == 1);
     CHECK(best.settings.limiting.parameters.regularization == 1.2f);
@@ -70,7 +87,7 @@ TEST_CASE("the search finds the fewest sub-steps that meet the target") {
 
 TEST_CASE("frames that only a whole run has make for more sub-steps") {
     MadeUp cloth{.hard_from = 150};
-    const Trial best = found({.target = 0.026, .budget_seconds = {}}, cloth, 200);
+    const Trial best = found({.target = 0.026, .target_stretch = {}, .budget_seconds = {}}, cloth, 200);
     CHECK(best.max_area_change <= 0.026);
     CHECK(best.settings.limiting.parameters.sub_steps == 32);  // 0.6 / 26 would do, the next that is tried is 32
     CHECK(best.frames == 200);
@@ -78,12 +95,48 @@ TEST_CASE("frames that only a whole run has make for more sub-steps") {
 
 TEST_CASE("within a budget the closest to a target out of reach") {
     MadeUp cloth;
-    const TuningGoal goal{.target = 0.001, .budget_seconds = 0.0125};
+    const TuningGoal goal{.target = 0.001, .target_stretch = {}, .budget_seconds = 0.0125};
     const Trial best = found(goal, cloth, 60);
     CHECK(goal.within_budget(best));
     CHECK_FALSE(goal.meets_target(best));
     CHECK(best.settings.limiting.parameters.sub_steps * best.settings.steps_per_frame ==
           10);  // what is given to start from
+}
+
+TEST_CASE("a stretch asked for brings a ceiling, low enough to meet it") {
+    MadeUp cloth;
+    const TuningGoal goal{.target = 0.026, .target_stretch = 1.1, .budget_seconds = {}};
+    const Trial best = found(goal, cloth, 60, ten_sub_steps(), {.ceiling = true});
+    CHECK(goal.meets_target(best));
+    CHECK(best.settings.limiting.options.limits_stretch);
+    CHECK(best.settings.limiting.options.solver == Solver::chebyshev);
+    CHECK(best.settings.limiting.parameters.stretch_ceiling == 1.075f);  // 1.095 is overshot
+    CHECK(best.settings.limiting.parameters.sub_steps == 8);
+}
+
+TEST_CASE("where areas alone do, a stretch asked for brings no ceiling") {
+    MadeUp cloth{.free_stretch = 1.05};
+    const Trial best = found({.target = 0.026, .target_stretch = 1.1, .budget_seconds = {}}, cloth, 60, ten_sub_steps(),
+                             {.ceiling = true});
+    CHECK_FALSE(best.settings.limiting.options.limits_stretch);
+    CHECK(best.settings.limiting.parameters.sub_steps == 8);
+}
+
+TEST_CASE("a scene's ceiling stays, and what misses the stretch does not meet the target") {
+    MadeUp cloth;
+    LimiterSettings given = under_a_ceiling(1.1f);
+    given.limiting.parameters.most_sub_steps = 20;  // fewer than some that are tried
+    const TuningGoal within{.target = 0.006, .target_stretch = 1.125, .budget_seconds = {}};
+    const Trial best = found(within, cloth, 60, given);
+    CHECK(within.meets_target(best));
+    CHECK(best.settings.limiting.parameters.stretch_ceiling == 1.1f);
+    CHECK(best.settings.limiting.options.limits_stretch);
+    CHECK(best.settings.limiting.parameters.sub_steps * best.settings.steps_per_frame >= 34);
+    const TuningGoal beyond{.target = 0.026, .target_stretch = 1.105, .budget_seconds = {}};
+    const Trial missed = found(beyond, cloth, 60, given);
+    CHECK(missed.max_area_change <= beyond.target);
+    CHECK_FALSE(beyond.meets_target(missed));
+    CHECK(beyond.miss(missed) == Approx(1.1 * 0.1 / 0.105).epsilon(1e-6));
 }
 
 TEST_CASE("an interruption ends the search") {
@@ -99,7 +152,7 @@ TEST_CASE("a solver that is given stays, and settings that a limiter refuses are
             tried.insert(settings.limiting.options.solver);
             return cloth(settings, count, enough);
         };
-        CHECK(search_settings({.target = 0.026, .budget_seconds = {}}, given, freedom, 60, run));
+        CHECK(search_settings({.target = 0.026, .target_stretch = {}, .budget_seconds = {}}, given, freedom, 60, run));
         return tried;
     };
     LimiterSettings given = ten_sub_steps();
@@ -128,6 +181,16 @@ TEST_CASE("settings change nothing else in a scene") {
         R"({"mesh":{"grid":{}},"time_step":0.005,"strain_limiting":{"matrix":"consistent","regularization":[1.1,1.2],)"
         R"("sub_steps":3,"tolerance":0.1,"max_iterations":50},"frames":3,"steps_per_frame":2})");
     CHECK(settings_of(changed) == fewer);
+
+    const auto bare = nlohmann::ordered_json::parse(R"({"mesh": {"grid": {}}})");
+    LimiterSettings limited = settings_of(bare);
+    limited.limiting.options.limits_stretch = true;
+    limited.limiting.options.solver = Solver::chebyshev;
+    limited.limiting.parameters.stretch_ceiling = 1.075f;
+    const auto ceiled = with_settings(bare, settings_of(bare), limited);
+    CHECK(ceiled["strain_limiting"]["stretch_ceiling"] == 1.075);
+    CHECK_FALSE(ceiled["strain_limiting"].contains("limits_stretch"));
+    CHECK(settings_of(ceiled) == limited);
 
     const auto plain = nlohmann::ordered_json::parse(R"({"mesh": {"grid": {}}})");
     LimiterSettings rising;

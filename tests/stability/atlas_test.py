@@ -87,8 +87,8 @@ class Atlas(unittest.TestCase):
 
     def run_again(self, chosen, method, x, y, folder):
         parameters = next(m["parameters"] for m in chosen.methods if m["name"] == method)
-        if chosen.alpha:
-            parameters = {**parameters, "strain_limiting.regularization": x}
+        if chosen.parameter:
+            parameters = {**parameters, chosen.parameter: x}
         methods = maps.WITHOUT + [{"name": method, "parameters": parameters}]
         scene = chosen.scene(x, y)
         without, again = measure.run_column(PROGRAM, folder, [("point", scene)], methods, 300.0)["runs"]

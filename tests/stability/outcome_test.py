@@ -86,6 +86,14 @@ class Outcomes(unittest.TestCase):
         self.assertEqual(outcome.longest_edge(made_up([0.1], stretches=[None])), math.inf)
         self.assertEqual(outcome.longest_edge(made_up([0.1], status="diverged")), math.inf)
 
+    def test_a_ceiling_is_held_to(self):
+        without = made_up([0.3])
+        for change, longest, expected in ((0.05, 1.12, "h"), (0.05, 1.13, "s"), (0.2, 1.13, "i"), (0.05, None, "s")):
+            run = made_up([change], stretches=[longest]) | {"parameters": {"strain_limiting.stretch_ceiling": 1.1}}
+            with self.subTest(change=change, longest=longest):
+                self.assertEqual(outcome.outcome(run, without), expected)
+        self.assertEqual(outcome.outcome(made_up([0.05], stretches=[9.0]) | {"parameters": {}}, without), "h")
+
     def test_what_moves_by_itself(self):
         for scene, expected in (({}, False), ({"pins": [{"vertices": [0]}], "start": {"scale": [0, 0, 0]}}, False),
                                 ({"pins": [{"vertices": [0]}, {"box": {}, "motion": {"translate": {}}}]}, True),
@@ -190,7 +198,7 @@ def made_up_map():
 class Summary(unittest.TestCase):
     def test_table(self):
         self.assertEqual(summary.table([made_up_map()])[2],
-                         "| [Made up](stability/made_up.png) | 4 | 1 | 1 | 1 | 0 | 2 (PBD) | 1 | 2 | 0 | 2 (2.5) |")
+                         "| [Made up](stability/made_up.png) | 4 | 1 | 1 | 1 | 0 | – | 2 (PBD) | 1 | 2 | 0 | 2 (2.5) |")
 
     def test_points(self):
         self.assertEqual(list(summary.held_by_baselines_alone(made_up_map())),
@@ -209,7 +217,13 @@ class Summary(unittest.TestCase):
     def test_a_map_without_the_printed_matrix(self):
         document = made_up_map()
         document["methods"] = [m for m in document["methods"] if m["name"] != "apsl_printed"]
-        self.assertIn("| 1 | 1 | 1 | – | 2 (PBD) |", summary.table([document])[2])
+        self.assertIn("| 1 | 1 | 1 | – | – | 2 (PBD) |", summary.table([document])[2])
+
+    def test_a_map_of_the_ceiling(self):
+        document = made_up_map()
+        document["methods"] = [document["methods"][0], {**document["methods"][1], "name": "apsl_ceiling"}]
+        document["methods"][1]["outcome"] = ["hs", "wd"]
+        self.assertIn("| 4 | 1 | – | – | – | 1 | – | 0 | 2 | 0 | 2 (2.5) |", summary.table([document])[2])
 
     def test_long_lists_are_cut(self):
         title, *points = summary.listed([made_up_map()], lambda _: [str(n) for n in range(20)])

@@ -30,6 +30,8 @@ def made_up_run(scene, method, milliseconds, mean, parameters=None, triangles=81
             "limiter_seconds_per_frame": {"median": 1e-3 * milliseconds},
             "max_area_change": 2.0 * mean, "mean_max_area_change": mean, "rms_area_change": 0.3 * mean,
             "mean_displacement": [0.0, -mean, 0.0], "frame_max_area_change": [mean, 2.0 * mean, None],
+            "settled": {"max_area_change": mean, "max_edge_stretch": 1.0 + 2.0 * mean,
+                        "max_principal_stretch": 1.0 + 3.0 * mean},
             "deviation": {"frames": [{"frame": 9, "rms": 0.01 * mean, "max": 0.1 * mean}]}}
 
 
@@ -81,6 +83,7 @@ class Charts(unittest.TestCase):
     def test_every_chart_is_drawn(self):
         for script, arguments in (("pareto_chart", ("--scene", "curtain")), ("convergence_chart", ("--scene", "curtain")),
                                   ("compare_curves", ("--scene", "curtain")), ("locking_chart", ()),
+                                  ("stretch_chart", ("--scene", "curtain", "--ceiling", "1.1")),
                                   ("refinement_chart", ("--target", "0.05")), ("deviation_chart", ())):
             with self.subTest(script=script):
                 out = self.folder / f"{script}.png"
@@ -94,8 +97,13 @@ class Charts(unittest.TestCase):
 
     def test_what_cannot_be_drawn_is_one_line(self):
         (self.folder / "broken.json").write_text("{")
+        short = made_up_results()
+        for run in short["runs"]:
+            del run["settled"]
+        self.write(short, "short.json")
         (self.folder / "other.json").write_text('{"runs": [{}], "scenes": []}')
         for script, arguments in (("pareto_chart", (self.results, "--scene", "nowhere")),
+                                  ("stretch_chart", (self.folder / "short.json", "--scene", "curtain")),
                                   ("pareto_chart", (self.folder / "broken.json", "--scene", "curtain")),
                                   ("convergence_chart", (self.folder / "other.json", "--scene", "curtain")),
                                   ("compare_curves", (self.folder / "missing.json", "--scene", "curtain")),
@@ -113,6 +121,7 @@ class Charts(unittest.TestCase):
         self.write(made_up_results(), "front.json")
         code, said, complained = self.run_chart("compare_summary", self.folder)
         self.assertEqual((code, complained), (0, ""))
+        self.assertNotIn("principal stretch", said)  # there is no file of it
         # 10 sub-steps take 2 ms: 4 % with the paper's setting, 1 % with rising α, which has 4 % after 1 ms at most.
         self.assertIn("a third of 4 % | 1 %, 4 times less", said)
         self.assertRegex(said, r"\| curtain \| the paper's: 1\.2, 10 \| 4 % \| .* \| 1\.00 \|")
@@ -123,6 +132,24 @@ class Charts(unittest.TestCase):
         self.assertEqual((level, title), (0.05, "pbd edges"))
         self.assertAlmostEqual(ours, 1.0)
         self.assertAlmostEqual(baseline, 2.5 * 4.0 ** (math.log(0.16 / 0.05) / math.log(4.0)))
+
+    def test_summary_says_who_holds_areas_and_stretch(self):
+        for name in ("curtain_8k", "refinement", "front"):
+            self.write(made_up_results(), f"{name}.json")
+        self.write(made_up_results(triangles=32768), "curtain_32k.json")
+        results = made_up_results()
+        ceiling = {"strain_limiting.stretch_ceiling": 1.1, "strain_limiting.sub_steps": 20}
+        results["runs"] += [made_up_run("curtain", "apsl_defaults", 2.0, 0.005, {"steps_per_frame": 1}),
+                            made_up_run("curtain", "apsl_ceiling", 6.0, 0.003, ceiling),
+                            made_up_run("curtain", "apsl_ceiling", 7.0, 0.004, {**ceiling, "strain_limiting.sub_steps": 30})]
+        self.write(results, "stretch.json")
+        code, said, complained = self.run_chart("compare_summary", self.folder)
+        self.assertEqual((code, complained), (0, ""))
+        self.assertIn("| ceiling 1.1, 20 sub-steps | 1 | 0.3 % | 1.006 | 1.009 | 3.00 | yes |", said)
+        self.assertIn("| ceiling 1.1, 30 sub-steps | 1 | 0.4 % | 1.008 | 1.012 | 3.50 | no |", said)
+        self.assertIn("| none | 1 | 60 % | 2.200 | 2.800 | – | no |", said)
+        for line in said.splitlines():
+            self.assertNotRegex(line.removeprefix("| |"), r"\| +\|", line)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ class Compare(unittest.TestCase):
 
     def compare(self, *arguments, code=0):
         done = subprocess.run([str(a) for a in (program, "compare", *arguments)], capture_output=True, text=True,
-                              timeout=60)
+                              timeout=120)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
@@ -56,7 +56,7 @@ class Compare(unittest.TestCase):
         keys = [json.dumps([run["method"], run["parameters"]], sort_keys=True) for run in runs]
         self.assertEqual(len(keys), len(set(keys)))
         ours = {"none", "springs", "apsl", "apsl_printed", "apsl_adaptive", "apsl_direct", "apsl_small_steps", "apsl_chebyshev",
-                "apsl_several_steps"}
+                "apsl_ceiling", "apsl_several_steps"}
         self.assertLess(ours, {run["method"] for run in runs})
         for run in runs:
             self.assertEqual(run["frames"], 2)
@@ -76,6 +76,23 @@ class Compare(unittest.TestCase):
         self.assertLess(max(change["apsl"]), 0.9 * none)
         self.assertLess(min(change["apsl"]), 0.01)
         self.assertLess(min(change["apsl_direct"]), 0.01)
+
+    def test_what_settled_frames_hold_is_told_of_every_method(self):
+        self.compare(self.flag, "--methods", "none,apsl_ceiling,pbd_edges", "--frames", 16, "--out", self.out)
+        stretch = {}
+        for run in self.results()["runs"]:
+            settled = run["settled"]
+            self.assertLessEqual(settled["max_area_change"], run["max_area_change"])
+            self.assertLessEqual(settled["max_edge_stretch"], settled["max_principal_stretch"] + 1e-6)
+            self.assertLessEqual(settled["max_edge_stretch"], run["edge_stretch"]["max"])
+            stretch.setdefault(run["method"], []).append(settled["max_principal_stretch"])
+        self.assertGreater(stretch["none"][0], 1.3)
+        self.assertLess(max(stretch["apsl_ceiling"]), 1.13)
+        self.assertLess(min(stretch["pbd_edges"]), stretch["none"][0])
+        # Ten frames are for settling alone.
+        self.out.unlink()
+        self.compare(self.flag, "--methods", "none", "--frames", 10, "--out", self.out)
+        self.assertNotIn("settled", self.results()["runs"][0])
 
     def test_finished_runs_are_not_made_again(self):
         self.compare(self.flag, "--methods", "none", "--out", self.out)
