@@ -38,8 +38,8 @@ def _device_libraries(folder, target):
     return [word for name in names for word in ("-Xclang", "-mlink-builtin-bitcode", "-Xclang", f"{folder / name}.bc")]
 
 
-def compile_kernels(clang, device_libraries, source, defines, target):
-    """A list of Usage, one for each kernel of the file. Raises CompileError."""
+def compile_source(clang, device_libraries, source, defines, target):
+    """Assembly text of the file's kernels, and the compiler's remarks. Raises CompileError."""
     command = [clang, "-x", "cl", "-cl-std=CL1.2", "-target", "amdgcn-amd-amdhsa", f"-mcpu={target.processor}", "-O3",
                "-S", "-o", "-", "-Wall", "-Wextra", "-Wundef", "-Werror", "-Rpass-analysis=kernel-resource-usage",
                "-fno-caret-diagnostics", "-nogpulib", "-mcode-object-version=5", f"-I{source.parent}"]
@@ -51,7 +51,12 @@ def compile_kernels(clang, device_libraries, source, defines, target):
     if result.returncode != 0:
         lines = [line for line in result.stderr.splitlines() if "remark:" not in line]
         raise CompileError("\n".join(lines))
-    return _usages(result.stdout, result.stderr)
+    return result.stdout, result.stderr
+
+
+def compile_kernels(clang, device_libraries, source, defines, target):
+    """A list of Usage, one for each kernel of the file. Raises CompileError."""
+    return _usages(*compile_source(clang, device_libraries, source, defines, target))
 
 
 def _usages(assembly, remarks):

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""Whether every kernel was executed, with every setting that host/ may build it with for a GPU."""
+import variants
+
+# Of these host/ passes what the meshes and the caller's layout have: only whether there is more than one counts.
+_SIZES = {"APSLK_PATCH_VERTICES", "APSLK_WARM_START_SUB_STEPS", "APSLK_POSITION_COMPONENT_STRIDE",
+          "APSLK_VELOCITY_COMPONENT_STRIDE"}
+
+
+def _setting(name, value):
+    return (name, min(value, 2)) if name in _SIZES else (name, value)
+
+
+def _settings(defines):
+    return frozenset(_setting(name, value) for name, value in defines)
+
+
+def missing(kernels, executed):
+    """Lines on what was not executed. `executed`: pairs of a recorded launch and the defines that its file reads."""
+    lines = []
+    launched = {(launch.source, launch.kernel) for launch, _ in executed}
+    for source, kernel in variants.kernels_named_in(kernels):
+        if (source, kernel) not in launched:
+            lines.append(f"{source}:{kernel}: no launch was executed, expected a scenario of "
+                         "tests/amd/replay/scenarios.cpp with one")
+    seen = {(launch.source, setting) for launch, defines in executed for setting in _settings(defines)}
+    wanted = {(variant.source.name, setting) for variant in variants.variants(kernels)
+              for setting in _settings(variant.defines)}
+    lines += [f"{source}: no launch was executed with {name}={'more' if name in _SIZES and value == 2 else value}"
+              for source, (name, value) in sorted(wanted - seen)]
+    return lines
+
+
+def summary(kernels, executed):
+    """How many of the combinations of settings were executed."""
+    done = {(launch.source, _settings(defines)) for launch, defines in executed}
+    wanted = {(variant.source.name, _settings(variant.defines)) for variant in variants.variants(kernels)}
+    return f"{len(wanted & done)} of {len(wanted)} combinations of settings executed, each setting at least once wanted"
