@@ -2,6 +2,7 @@
 """The compiler's assembly text, taken apart: instructions, branch targets, arguments and the kernel descriptor."""
 import re
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 
 class UnknownInstruction(Exception):
@@ -58,6 +59,7 @@ _WORDS = {"dword": "b32", "dwordx2": "b64", "dwordx3": "b96", "dwordx4": "b128",
           "byte": "b8"}
 
 
+@lru_cache(maxsize=None)
 def common_name(mnemonic):
     """The one name here for an instruction: without its encoding, as RDNA 3 calls it."""
     name = re.sub(r"_(e32|e64|sdwa)$", "", mnemonic)
@@ -71,6 +73,8 @@ def common_name(mnemonic):
 
 def _split(text, separator):
     """Parts of a text between separators that stand outside of brackets."""
+    if "[" not in text and "(" not in text:
+        return [part.strip() for part in text.split(separator) if part.strip()]
     parts, depth = [""], 0
     for character in text:
         depth += (character in "[(") - (character in "])")
@@ -101,10 +105,11 @@ def _body(lines):
     instructions, labels = [], {}
     for line in lines:
         line = line.split(";")[0].rstrip()
-        if label := re.fullmatch(r"(\.?\w+):", line):
-            labels[label[1]] = len(instructions)
-        elif line.startswith("\t") and not line.startswith("\t."):
-            instructions.append(parse_instruction(line.strip()))
+        if line.startswith("\t"):
+            if not line.startswith("\t."):
+                instructions.append(parse_instruction(line.strip()))
+        elif line.endswith(":"):
+            labels[line[:-1]] = len(instructions)
     for instruction in instructions:
         if instruction.mnemonic.startswith(("s_branch", "s_cbranch")):
             instruction.target = labels[instruction.operands[0]]

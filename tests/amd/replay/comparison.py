@@ -12,9 +12,12 @@ import numpy as np
 
 TOLERANCE = 2e-6
 TOLERANCES = {
+    "assemble_gradients": 5e-5,  # a stretch at its ceiling is the difference of nearly equal numbers
     "finish_solve": 2e-4,  # up to 20 CG iterations, each of which amplifies the roundings of those before
     "filter_in_one_group": 5e-4,  # a whole call; velocities are differences of positions over a time step
 }
+# Of the caller's positions and velocities, where each launch starts from what the last one left.
+WHOLE_CALL_TOLERANCE = 1e-3
 # A gradient's components are whole numbers that a float was rounded to: it may lie on the edge between two.
 GRADIENT_STEP = 1
 
@@ -75,13 +78,17 @@ def _compare_whole(got, want, step):
     return None
 
 
-def compare(kernels, kernel, type_name, got, want):
+def tolerance_of(kernel):
+    return TOLERANCES.get(kernel, TOLERANCE)
+
+
+def compare(kernels, want, got, type_name, tolerance):
     """The greatest difference of floats, as a share, and lines on what is wrong. `kernels`: folder of the sources;
-    `got`, `want`: the bytes of one buffer, what it holds from the type of the argument."""
+    `want`, `got`: the bytes of a buffer, which holds what an argument of the type `type_name` points to."""
     if got == want:
         return 0.0, []
     kind = _type_of(kernels, type_name)
-    count = len(got) // kind.itemsize
+    count = len(want) // kind.itemsize
     end = count * kind.itemsize
     wrong, greatest = [] if got[end:] == want[end:] else ["the bytes behind its last entry"], 0.0
     got, want = np.frombuffer(got, kind, count), np.frombuffer(want, kind, count)
@@ -90,7 +97,7 @@ def compare(kernels, kernel, type_name, got, want):
         if a.tobytes() == b.tobytes():
             continue
         if a.dtype.kind == "f":
-            share, line = _compare_floats(a.ravel(), b.ravel(), TOLERANCES.get(kernel, TOLERANCE))
+            share, line = _compare_floats(a.ravel(), b.ravel(), tolerance)
             greatest = max(greatest, share)
         else:
             line = _compare_whole(a.ravel(), b.ravel(), GRADIENT_STEP if a.dtype == np.int16 else 0)

@@ -7,12 +7,26 @@ _SIZES = {"APSLK_PATCH_VERTICES", "APSLK_WARM_START_SUB_STEPS", "APSLK_POSITION_
           "APSLK_VELOCITY_COMPONENT_STRIDE"}
 
 
+# Settings that a file reads and the gate compiles, with which host/ never builds it.
+_NOT_BUILT = {("chebyshev_step.cl", ("APSLK_REGULARIZATION_PER_TRIANGLE", 1)),
+              ("start_small_steps.cl", ("APSLK_POSITIONS_ONLY", 1)),
+              ("warm_start.cl", ("APSLK_WARM_START_SUB_STEPS", 0))}
+
+
 def _setting(name, value):
     return (name, min(value, 2)) if name in _SIZES else (name, value)
 
 
 def _settings(defines):
     return frozenset(_setting(name, value) for name, value in defines)
+
+
+def adds(launch, defines, seen):
+    """Whether a launch has a kernel with a setting that no launch before it had; `seen` takes note."""
+    new = {(launch.source, launch.kernel, setting) for setting in _settings(defines)} | {(launch.source, launch.kernel)}
+    added = not new <= seen
+    seen |= new
+    return added
 
 
 def missing(kernels, executed):
@@ -27,7 +41,7 @@ def missing(kernels, executed):
     wanted = {(variant.source.name, setting) for variant in variants.variants(kernels)
               for setting in _settings(variant.defines)}
     lines += [f"{source}: no launch was executed with {name}={'more' if name in _SIZES and value == 2 else value}"
-              for source, (name, value) in sorted(wanted - seen)]
+              for source, (name, value) in sorted(wanted - seen - _NOT_BUILT)]
     return lines
 
 
@@ -35,4 +49,4 @@ def summary(kernels, executed):
     """How many of the combinations of settings were executed."""
     done = {(launch.source, _settings(defines)) for launch, defines in executed}
     wanted = {(variant.source.name, _settings(variant.defines)) for variant in variants.variants(kernels)}
-    return f"{len(wanted & done)} of {len(wanted)} combinations of settings executed, each setting at least once wanted"
+    return f"{len(wanted & done)} of {len(wanted)} combinations of settings executed"

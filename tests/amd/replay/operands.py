@@ -2,6 +2,7 @@
 """Operands of instructions: which register or constant, how it is read, and where results go."""
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from assembly import UnknownInstruction
@@ -33,6 +34,7 @@ class Operand:
         return Operand(self.kind, self.number + offset, self.negated, self.absolute)
 
 
+@lru_cache(maxsize=None)
 def parse(text, part="DWORD"):
     negated = absolute = sign_extended = False
     whole = text

@@ -4,78 +4,49 @@
 Exit status: 0 all agree; 1 some do not, one line each on standard error; 2 wrong usage or no compiler.
 """
 import argparse
-import shutil
 import sys
 import time
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
+try:
+    import numpy  # noqa: F401
+except ImportError:
+    sys.exit("error: numpy was not found, expected it for /usr/bin/python3 (Debian: python3-numpy)")
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import amd_compiler  # noqa: E402
 import check_kernels  # noqa: E402
 import coverage  # noqa: E402
 import variants  # noqa: E402
-from assembly import UnknownInstruction, common_name, kernels_of  # noqa: E402
-from comparison import compare  # noqa: E402
-from launch import Schedule, run  # noqa: E402
-from memory import DeviceMemory, Fault  # noqa: E402
+import whole_calls  # noqa: E402
+from assembly import UnknownInstruction, common_name  # noqa: E402
+from comparison import compare, tolerance_of  # noqa: E402
+from compiled import Compiled  # noqa: E402
+from launch import Schedule  # noqa: E402
+from memory import Fault  # noqa: E402
 from recording import BadRecording, RecordedBuffer, contents, launches_of  # noqa: E402
-
-
-class Compiled:
-    """Kernels of a folder of sources, compiled for a target when they are first launched."""
-
-    def __init__(self, clang, device_libraries, kernels, target):
-        self.clang, self.device_libraries, self.kernels, self.target = clang, device_libraries, kernels, target
-        self._files = {}
-
-    def defines_of(self, launch):
-        """The part of the program's defines that the file reads."""
-        names = variants.defines_read_by(self.kernels / launch.source)
-        return tuple((name, launch.defines[name]) for name in names)
-
-    def kernel(self, launch):
-        """Raises amd_compiler.CompileError."""
-        key = launch.source, self.defines_of(launch)
-        if key not in self._files:
-            assembly, _ = amd_compiler.compile_source(self.clang, self.device_libraries, self.kernels / launch.source,
-                                                      key[1], self.target)
-            self._files[key] = kernels_of(assembly)
-        return self._files[key][launch.kernel]
-
-    def all_kernels(self):
-        return [kernel for file in self._files.values() for kernel in file.values()]
 
 
 def replay(compiled, launch, schedule=Schedule(), races=False):
     """Executes one recorded launch from what its buffers held. Wave instructions executed, the greatest difference of
     floats as a share, and lines on what is wrong."""
-    memory = DeviceMemory(set() if races else None)
-    buffers, arguments = {}, []
-    for argument in launch.arguments:
-        if isinstance(argument, RecordedBuffer):
-            if argument.number not in buffers:
-                buffers[argument.number] = memory.add(contents(argument.before))
-            arguments.append(buffers[argument.number].address.to_bytes(8, "little"))
-        else:
-            arguments.append(argument)
+    held, found = {}, set() if races else None
     try:
-        kernel = compiled.kernel(launch)
-        executed = run(kernel, compiled.target, memory, arguments, launch.grid, schedule)
+        executed = compiled.execute(launch, held, schedule, found)
     except amd_compiler.CompileError as error:
         return 0, 0.0, [f"compile: {error}"]
-    except (UnknownInstruction, Fault) as error:
-        kind = "unknown instruction" if isinstance(error, UnknownInstruction) else "fault"
-        return 0, 0.0, [f"{kind}: {error}"]
-    wrong = [f"race: {race}" for race in sorted(memory.races or ())]
-    greatest = 0.0
-    for argument, described in zip(launch.arguments, kernel.arguments):
+    except UnknownInstruction as error:
+        return 0, 0.0, [f"unknown instruction: {error}"]
+    except Fault as error:
+        return 0, 0.0, [f"fault: {error}"]
+    wrong, greatest = [f"race: {race}" for race in sorted(found or ())], 0.0
+    for number, (argument, described) in enumerate(zip(launch.arguments, compiled.kernel(launch).arguments)):
         if isinstance(argument, RecordedBuffer):
-            share, lines = compare(compiled.kernels, launch.kernel, described.type_name,
-                                   buffers[argument.number].contents(), contents(argument.after))
+            share, lines = compare(compiled.kernels, contents(argument.after), held[argument.number],
+                                   described.type_name, tolerance_of(launch.kernel))
             greatest = max(greatest, share)
-            wrong += [f"{described.type_name} of argument {launch.arguments.index(argument)}: {line}" for line in lines]
+            wrong += [f"argument {number}, {described.type_name}: {line}" for line in lines]
     return executed, greatest, wrong
 
 
@@ -85,17 +56,11 @@ def has_work(launch):
                if isinstance(argument, RecordedBuffer))
 
 
-def chosen(launches, compiled, each):
-    """Of every kernel and variant the first `each` launches that have work; 0: all launches."""
-    if each == 0:
-        return launches
-    taken, result = {}, []
-    for launch in launches:
-        key = launch.kernel, launch.source, compiled.defines_of(launch)
-        if has_work(launch) and taken.get(key, 0) < each:
-            taken[key] = taken.get(key, 0) + 1
-            result.append(launch)
-    return result
+def few(launches, compiled):
+    """Launches with work that between them have every kernel with every setting that the recordings have."""
+    seen = set()
+    return [launch for launch in launches
+            if has_work(launch) and coverage.adds(launch, compiled.defines_of(launch), seen)]
 
 
 def target_named(name):
@@ -112,8 +77,12 @@ def parse_arguments():
     parser.add_argument("--target", type=target_named, action="append", help="gfx906/64 …; all where none is given")
     parser.add_argument("--kernels", type=Path, default=check_kernels.PROJECT / "kernels", help="folder of the sources")
     parser.add_argument("--kernel", help="launches of this kernel alone")
-    parser.add_argument("--each", type=int, default=1, metavar="N",
-                        help="N launches with work of each kernel and variant; 0: every launch")
+    parser.add_argument("--all", action="store_true",
+                        help="every launch, not just enough for every kernel and setting of it")
+    parser.add_argument("--whole-calls", action="store_true",
+                        help="every launch, from what the one before it left; compares what the calls leave, and all "
+                             "bytes between orders of waves and groups")
+    parser.add_argument("--orders", type=int, default=2, help="with --whole-calls: random orders beside the plain one")
     parser.add_argument("--races", action="store_true", help="look for races")
     parser.add_argument("--seed", type=int, default=1, help="of noise in registers, and of random schedules")
     parser.add_argument("--quantum", type=int, default=0, metavar="N",
@@ -135,36 +104,50 @@ def print_kernels(figures):
         print(f"{launches:9}{executed:14}{greatest:12.1e}{seconds:9.1f}  {name}")
 
 
-def replay_target(arguments, target, launches):
-    """Lines on what is wrong."""
-    started = time.monotonic()
-    compiled = Compiled(arguments.clang, arguments.device_libraries, arguments.kernels, target)
-    schedule = Schedule(arguments.seed, arguments.quantum)
-    refused, figures, done = [], {}, []
-    for launch in chosen(launches, compiled, arguments.each):
-        begun = time.monotonic()
-        executed, greatest, wrong = replay(compiled, launch, schedule, arguments.races)
-        refused += [f"{launch} {target}: {line}" for line in wrong]
-        figure = figures.setdefault(launch.kernel, [0, 0, 0.0, 0.0])
-        figure[0] += 1
-        figure[1] += executed
-        figure[2] = max(figure[2], greatest)
-        figure[3] += time.monotonic() - begun
-        if executed > 0:
-            done.append((launch, compiled.defines_of(launch)))
-    print_kernels(figures)
+def print_instructions(compiled):
     code = [instruction for kernel in compiled.all_kernels() for instruction in kernel.instructions]
     known = {common_name(instruction.mnemonic) for instruction in code}
     met = {common_name(instruction.mnemonic) for instruction in code if instruction.executed}
     places = sum(1 for instruction in code if instruction.executed)
-    print(f"{target}: {sum(f[0] for f in figures.values())} launches of {len(figures)} kernels, "
-          f"{sum(f[1] for f in figures.values())} wave instructions, {time.monotonic() - started:.0f} s; "
-          f"{len(met)} of {len(known)} mnemonics and {places} of {len(code)} instructions in the compiled kernels executed")
+    print(f"{compiled.target}: {len(met)} of {len(known)} mnemonics and {places} of {len(code)} instructions of the "
+          "compiled kernels executed")
     if known - met:
-        print(f"{target}: never executed: {', '.join(sorted(known - met))}")
+        print(f"{compiled.target}: never executed: {', '.join(sorted(known - met))}")
+
+
+def replay_launches(arguments, compiled, launches):
+    """Each from its own recording. Lines on what is wrong."""
+    schedule = Schedule(arguments.seed, arguments.quantum)
+    refused, figures, done = [], {}, []
+    for launch in launches if arguments.all else few(launches, compiled):
+        begun = time.monotonic()
+        executed, greatest, wrong = replay(compiled, launch, schedule, arguments.races)
+        refused += [f"{launch} {compiled.target}: {line}" for line in wrong]
+        figure = figures.setdefault(launch.kernel, [0, 0, 0.0, 0.0])
+        figure[:] = (figure[0] + 1, figure[1] + executed, max(figure[2], greatest),
+                     figure[3] + time.monotonic() - begun)
+        if executed > 0:
+            done.append((launch, compiled.defines_of(launch)))
+    print_kernels(figures)
+    print(f"{compiled.target}: {sum(f[0] for f in figures.values())} launches of {len(figures)} kernels, "
+          f"{sum(f[1] for f in figures.values())} wave instructions")
     if not arguments.no_coverage:
-        refused += [f"{target}: coverage: {line}" for line in coverage.missing(arguments.kernels, done)]
-        print(f"{target}: {coverage.summary(arguments.kernels, done)}")
+        refused += [f"{compiled.target}: coverage: {line}" for line in coverage.missing(arguments.kernels, done)]
+        print(f"{compiled.target}: {coverage.summary(arguments.kernels, done)}")
+    return refused
+
+
+def follow_calls(arguments, compiled, launches):
+    """Every scenario from its first launch to its last. Lines on what is wrong."""
+    refused = []
+    seeds = range(arguments.seed, arguments.seed + arguments.orders)
+    for scenario in dict.fromkeys(launch.scenario for launch in launches):
+        of_it = [launch for launch in launches if launch.scenario == scenario]
+        try:
+            _, wrong = whole_calls.check(compiled, scenario, of_it, seeds, arguments.quantum or 60, arguments.races)
+        except (amd_compiler.CompileError, UnknownInstruction, Fault) as error:
+            wrong = [f"{scenario}: {type(error).__name__}: {error}"]
+        refused += [f"{compiled.target}: {line}" for line in wrong]
     return refused
 
 
@@ -180,7 +163,11 @@ def main():
         return 1
     refused = []
     for target in arguments.target or variants.TARGETS:
-        refused += replay_target(arguments, target, launches)
+        begun = time.monotonic()
+        compiled = Compiled(arguments.clang, arguments.device_libraries, arguments.kernels, target)
+        refused += (follow_calls if arguments.whole_calls else replay_launches)(arguments, compiled, launches)
+        print_instructions(compiled)
+        print(f"{target}: {time.monotonic() - begun:.0f} s", flush=True)
     for line in refused:
         print(f"refused: {line}", file=sys.stderr)
     return 1 if refused else 0

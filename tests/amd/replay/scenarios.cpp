@@ -21,7 +21,7 @@ std::vector<MovingCloth> unequal_cloths() {
 
 // Not the library's defaults: few sub-steps, since every instruction of them is interpreted, and more iterations than
 // are queued at once.
-constexpr Parameters two_sub_steps{.regularization = 1.05f, .sub_steps = 2, .tolerance = 1e-3f, .max_iterations = 20};
+constexpr Parameters two_sub_steps{.regularization = 1.05f, .sub_steps = 2, .tolerance = 1e-3f, .max_iterations = 24};
 
 constexpr Parameters small_steps(Parameters parameters) {
     parameters.stepping = Stepping::small_steps;
@@ -57,6 +57,8 @@ constexpr Parameters off(Parameters parameters) {
 }
 
 constexpr Parameters short_solve(Parameters parameters) {
+    parameters.regularization = 2.0f;
+    parameters.tolerance = 0.03f;
     parameters.max_iterations = 3;
     return parameters;
 }
@@ -92,8 +94,10 @@ constexpr Options printed_csr{
     .matrix = Matrix::printed, .apply = Apply::assembled_csr, .execution = Execution::many_groups};
 constexpr Options alpha_each{.execution = Execution::many_groups, .regularization_per_triangle = true};
 constexpr Options warm{.execution = Execution::many_groups, .warm_start_sub_steps = 2};
-constexpr Options warm_alpha_each{
-    .execution = Execution::many_groups, .regularization_per_triangle = true, .warm_start_sub_steps = 2};
+constexpr Options warm_step_alpha_each{.execution = Execution::many_groups,
+                                       .regularization_per_triangle = true,
+                                       .warm_start_sub_steps = 2,
+                                       .integrates = true};
 constexpr Options stretch{.execution = Execution::many_groups, .limits_stretch = true};
 constexpr Options stretch_each{
     .execution = Execution::many_groups, .limits_stretch = true, .stretch_ceiling_per_triangle = true};
@@ -140,10 +144,9 @@ std::vector<Scenario> small_scenarios() {
     constexpr Parameters p = two_sub_steps;
     return {
         one_cloth("gradient", by_gradient, p),
-        one_cloth("gradient_64", groups_of_64(by_gradient), small_steps(p)),
+        one_cloth("gradient_arrays_64", groups_of_64(structure_of_arrays(by_gradient)), small_steps(p)),
         one_cloth("gradient_positions", positions_only(by_gradient), p),
         {"warm_start_cloths", xyzw(warm), {p, small_steps(p), off(p), adaptive(p)}, unequal_cloths(), 2},
-        one_cloth("warm_start_alpha_each_64", groups_of_64(warm_alpha_each), adaptive(p), 2),
         one_cloth("csr", csr, short_solve(p)),
         one_cloth("printed_64", groups_of_64(printed), short_solve(p)),
         one_cloth("printed", printed, short_solve(p)),
@@ -153,7 +156,8 @@ std::vector<Scenario> small_scenarios() {
         one_cloth("stretch", stretch, growing(p), 2),
         one_cloth("stretch_positions", positions_only(stretch), with_ceiling(p)),
         {"stretch_cloths_64", groups_of_64(stretch_each), {with_ceiling(p), p, off(p), growing(p)}, unequal_cloths()},
-        one_cloth("step_arrays", structure_of_arrays(step), falling(p)),
+        one_cloth("step_arrays_64", groups_of_64(structure_of_arrays(warm_step_alpha_each)), falling(p), 2),
+        one_cloth("step_stretch", step_with_ceiling, falling(growing(p))),
         one_cloth("step_stretch_xyzw_64", groups_of_64(xyzw(step_with_ceiling)), falling(growing(p))),
         one_cloth("one_group", one_group, short_solve(p)),
         one_cloth("one_group_xyzw_64", groups_of_64(xyzw(one_group)), small_steps(short_solve(p))),
@@ -168,7 +172,7 @@ std::vector<Scenario> further_scenarios() {
     const MovingCloth full = moving_cloth(grid(65, 65, 1.0, 1.0, Diagonals::alternating), 1);
     return {
         one_cloth("gradient_xyzw", xyzw(by_gradient), small_steps(p)),
-        one_cloth("gradient_arrays_64", groups_of_64(structure_of_arrays(by_gradient)), small_steps(p)),
+        one_cloth("gradient_64", groups_of_64(by_gradient), p),
         {"cloths_64", groups_of_64(by_gradient), {p, small_steps(p), off(p), adaptive(p)}, unequal_cloths()},
         one_cloth("alpha_each", alpha_each, adaptive(p)),
         one_cloth("csr_64", groups_of_64(csr), p),
