@@ -21,12 +21,23 @@ def _settings(defines):
     return frozenset(_setting(name, value) for name, value in defines)
 
 
-def adds(launch, defines, seen):
-    """Whether a launch has a kernel with a setting that no launch before it had; `seen` takes note."""
-    new = {(launch.source, launch.kernel, setting) for setting in _settings(defines)} | {(launch.source, launch.kernel)}
-    added = not new <= seen
-    seen |= new
-    return added
+def enough(launches):
+    """Of pairs of a launch and the defines that its file reads, some that between them have every kernel with every
+    setting that any of them has; of as few files and defines as is easily found, since each is a compilation."""
+    offered = {}
+    for launch, defines in launches:
+        settings = {(launch.source, launch.kernel, setting) for setting in _settings(defines)}
+        offered.setdefault((launch.kernel, launch.source, defines), (launch, settings | {(launch.source, launch.kernel)}))
+    missing_yet, chosen, compiled = set().union(*(has for _, has in offered.values())), [], set()
+    while missing_yet:
+        # What is compiled already comes first, then what has most that is missing.
+        kernel, source, defines = max(offered, key=lambda key: (
+            (key[1:] in compiled) and not missing_yet.isdisjoint(offered[key][1]), len(offered[key][1] & missing_yet)))
+        launch, has = offered.pop((kernel, source, defines))
+        chosen.append(launch)
+        compiled.add((source, defines))
+        missing_yet -= has
+    return chosen
 
 
 def missing(kernels, executed):

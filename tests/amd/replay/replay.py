@@ -58,9 +58,7 @@ def has_work(launch):
 
 def few(launches, compiled):
     """Launches with work that between them have every kernel with every setting that the recordings have."""
-    seen = set()
-    return [launch for launch in launches
-            if has_work(launch) and coverage.adds(launch, compiled.defines_of(launch), seen)]
+    return coverage.enough([(launch, compiled.defines_of(launch)) for launch in launches if has_work(launch)])
 
 
 def target_named(name):

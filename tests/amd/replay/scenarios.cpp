@@ -9,9 +9,10 @@
 namespace apsl::test {
 namespace {
 
-// 384 triangles, two groups' worth. A step of 15 % stretch, so that every sub-step has work.
+// 512 triangles: work for every work-item of two groups of 256, of which each sums its own. A step of 15 % stretch, so
+// that every sub-step has work.
 MovingCloth two_groups() {
-    return moving_cloth(grid(17, 13, 1.0, 0.7, Diagonals::alternating), 1);
+    return moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 1);
 }
 
 std::vector<MovingCloth> unequal_cloths() {
@@ -21,7 +22,7 @@ std::vector<MovingCloth> unequal_cloths() {
 
 // Not the library's defaults: few sub-steps, since every instruction of them is interpreted, and more iterations than
 // are queued at once.
-constexpr Parameters two_sub_steps{.regularization = 1.05f, .sub_steps = 2, .tolerance = 1e-3f, .max_iterations = 24};
+constexpr Parameters two_sub_steps{.regularization = 1.2f, .sub_steps = 2, .tolerance = 1e-5f, .max_iterations = 24};
 
 constexpr Parameters small_steps(Parameters parameters) {
     parameters.stepping = Stepping::small_steps;
@@ -31,6 +32,7 @@ constexpr Parameters small_steps(Parameters parameters) {
 constexpr Parameters falling(Parameters parameters) {
     parameters.acceleration = {0.5f, -9.81f, 0.25f};
     parameters.damping = 0.4f;
+    parameters.sub_steps = 4;
     return small_steps(parameters);
 }
 
