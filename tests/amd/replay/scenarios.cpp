@@ -15,9 +15,13 @@ MovingCloth two_groups() {
     return moving_cloth(grid(17, 17, 1.0, 1.0, Diagonals::alternating), 1);
 }
 
+// 96 triangles.
+MovingCloth small() {
+    return moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::random), 4);
+}
+
 std::vector<MovingCloth> unequal_cloths() {
-    return {two_groups(), moving_cloth(right_triangle(), 2), moving_cloth(book(5), 3),
-            moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::random), 4)};
+    return {two_groups(), moving_cloth(right_triangle(), 2), moving_cloth(book(5), 3), small()};
 }
 
 // Not the library's defaults: few sub-steps, since every instruction of them is interpreted, and more iterations than
@@ -154,7 +158,6 @@ std::vector<Scenario> small_scenarios() {
         one_cloth("printed", printed, short_solve(p)),
         one_cloth("printed_csr_64", groups_of_64(printed_csr), short_solve(p)),
         one_cloth("chebyshev", by_chebyshev, p),
-        one_cloth("chebyshev_positions_64", groups_of_64(positions_only(by_chebyshev)), p),
         one_cloth("stretch", stretch, growing(p), 2),
         one_cloth("stretch_positions", positions_only(stretch), with_ceiling(p)),
         {"stretch_cloths_64", groups_of_64(stretch_each), {with_ceiling(p), p, off(p), growing(p)}, unequal_cloths()},
@@ -162,9 +165,9 @@ std::vector<Scenario> small_scenarios() {
         one_cloth("step_stretch", step_with_ceiling, falling(growing(p))),
         one_cloth("step_stretch_xyzw_64", groups_of_64(xyzw(step_with_ceiling)), falling(growing(p))),
         one_cloth("one_group", one_group, short_solve(p)),
-        one_cloth("one_group_xyzw_64", groups_of_64(xyzw(one_group)), small_steps(short_solve(p))),
-        one_cloth("one_group_arrays_64", groups_of_64(structure_of_arrays(one_group)), short_solve(p)),
-        one_cloth("one_group_positions", positions_only(one_group), short_solve(p)),
+        of("one_group_xyzw_64", groups_of_64(xyzw(one_group)), small_steps(short_solve(p)), small()),
+        of("one_group_arrays_64", groups_of_64(structure_of_arrays(one_group)), short_solve(p), small()),
+        of("one_group_positions_64", groups_of_64(positions_only(one_group)), short_solve(p), small()),
     };
 }
 
@@ -173,6 +176,7 @@ std::vector<Scenario> further_scenarios() {
     constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
     const MovingCloth full = moving_cloth(grid(65, 65, 1.0, 1.0, Diagonals::alternating), 1);
     return {
+        one_cloth("chebyshev_positions_64", groups_of_64(positions_only(by_chebyshev)), p),
         one_cloth("gradient_xyzw", xyzw(by_gradient), small_steps(p)),
         one_cloth("gradient_64", groups_of_64(by_gradient), p),
         {"cloths_64", groups_of_64(by_gradient), {p, small_steps(p), off(p), adaptive(p)}, unequal_cloths()},
