@@ -137,8 +137,9 @@ def kernels_of(assembly):
         name = fields["name"]
         body = assembly.split(f"\n{name}:", 1)[1].split("\n.Lfunc_end", 1)[0]
         code, directives = body.split(f"\t.amdhsa_kernel {name}\n", 1)
-        descriptor = {key: int(value, 0) for key, value in
-                      re.findall(r"^\t\t\.amdhsa_(\w+) (\w+)$", directives.split(".end_amdhsa_kernel")[0], re.MULTILINE)}
+        directives = directives.split(".end_amdhsa_kernel", 1)[0]
+        descriptor = {key: int(value, 0)
+                      for key, value in re.findall(r"^\t\t\.amdhsa_(\w+) (\w+)$", directives, re.MULTILINE)}
         kernels[name] = Kernel(name, _body(code.splitlines()[1:]), _arguments(entry),
                                int(fields["kernarg_segment_size"]), int(fields["group_segment_fixed_size"]),
                                int(fields["private_segment_fixed_size"]), descriptor)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The kernels of a folder of sources, compiled for a target as the gate compiles them, and recorded launches of them."""
+"""The kernels of a folder of sources, compiled for a target as the gate does, and recorded launches of them."""
 import sys
 from functools import lru_cache
 from pathlib import Path

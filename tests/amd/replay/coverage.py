@@ -27,7 +27,8 @@ def enough(launches):
     offered = {}
     for launch, defines in launches:
         settings = {(launch.source, launch.kernel, setting) for setting in _settings(defines)}
-        offered.setdefault((launch.kernel, launch.source, defines), (launch, settings | {(launch.source, launch.kernel)}))
+        settings.add((launch.source, launch.kernel))
+        offered.setdefault((launch.kernel, launch.source, defines), (launch, settings))
     missing_yet, chosen, compiled = set().union(*(has for _, has in offered.values())), [], set()
     while missing_yet:
         # What is compiled already comes first, then what has most that is missing.

@@ -206,6 +206,10 @@ class ScalarInstructions(unittest.TestCase):
         machine.execute("s_and_not1_b32 exec_lo, exec_lo, 0xf")
         self.assertEqual(machine.scalar(EXEC), 0xfffffff0)
 
+    def test_roots_of_scalar_registers(self):
+        self.assert_result("v_s_sqrt_f32 s0, s1", bits(3.0)[0], s1=bits(9.0)[0])
+        self.assert_result("v_s_exp_f32 s0, |s1|", bits(8.0)[0], s1=bits(-3.0)[0])
+
     def test_comparisons(self):
         for text, want in (("s_cmp_lt_i32 s1, 0", 1), ("s_cmp_lt_u32 s1, 0", 0), ("s_bitcmp1_b32 s1, 31", 1),
                            ("s_cmpk_lt_i32 s1, 0x5", 1)):
@@ -371,9 +375,8 @@ class Coverage(unittest.TestCase):
                                  "cg_update.cl: no launch was executed with APSLK_WORK_GROUP_SIZE=256"])
 
     def test_enough_takes_every_setting_of_every_kernel(self):
-        offered = [(self.launch("a.cl", "one"), (("D", 0), ("E", 0))), (self.launch("a.cl", "two"), (("D", 0), ("E", 0))),
-                   (self.launch("a.cl", "one"), (("D", 1), ("E", 0))), (self.launch("a.cl", "one"), (("D", 1), ("E", 1))),
-                   (self.launch("a.cl", "two"), (("D", 1), ("E", 1)))]
+        offered = [(self.launch("a.cl", kernel), (("D", d), ("E", e)))
+                   for kernel, d, e in (("one", 0, 0), ("two", 0, 0), ("one", 1, 0), ("one", 1, 1), ("two", 1, 1))]
         taken = coverage.enough(offered)
         self.assertEqual({id(launch) for launch in taken}, {id(offered[n][0]) for n in (0, 1, 3, 4)})
 

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """One launch: work-groups, their waves, barriers, and the order in which waves take turns."""
 import random
-import struct
 from dataclasses import dataclass
 
 import numpy as np
 from assembly import UnknownInstruction
-from memory import DeviceMemory, Fault, LocalMemory
+from memory import Fault, LocalMemory
 from operands import FIRST_TRAP_REGISTER, WORD
 from wave import AT_BARRIER, ENDED, RUNNING, Wave
 

@@ -57,15 +57,17 @@ BARRIER_GONE_AT_PATCH_END = Fault(
 BARRIER_IN_BRANCH = Fault(
     "work_group.h", HALVING,
     HALVING.replace("scratch[l] += scratch[l + half_size];\n        barrier(CLK_LOCAL_MEM_FENCE);",
-                    "{\n            scratch[l] += scratch[l + half_size];\n            barrier(CLK_LOCAL_MEM_FENCE);\n        }"),
+                    "{ scratch[l] += scratch[l + half_size]; barrier(CLK_LOCAL_MEM_FENCE); }"),
     "gradient", "measure_area_change", "fault: .*barrier")
 SUM_NOT_FROM_ZERO = Fault(
-    "work_group.h", "    float sum = 0.0f;\n    for (uint g", "    float sum = scratch[get_local_id(0)];\n    for (uint g",
+    "work_group.h", "    float sum = 0.0f;\n    for (uint g",
+    "    float sum = scratch[get_local_id(0)];\n    for (uint g",
     "gradient", "matrix_free_apply_dot", "numbers, the first at")
 LOCKSTEP_OF_64 = Fault(
     "work_group.h", HALVING,
     HALVING.replace("        barrier(CLK_LOCAL_MEM_FENCE);\n    }\n",
-                    "        if (half_size > 64) barrier(CLK_LOCAL_MEM_FENCE);\n    }\n    barrier(CLK_LOCAL_MEM_FENCE);\n"),
+                    "        if (half_size > 64) barrier(CLK_LOCAL_MEM_FENCE);\n    }\n"
+                    "    barrier(CLK_LOCAL_MEM_FENCE);\n"),
     "gradient", "measure_area_change", "off by")
 # What is read is not used: the offsets grow, so the lesser of the two is what it was.
 OUT_OF_BOUNDS = Fault(

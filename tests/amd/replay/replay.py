@@ -70,7 +70,8 @@ def target_named(name):
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenarios", nargs="*", help="names of recordings; all where none is given")
+    parser.add_argument("scenarios", nargs="*",
+                        help="names of recordings; without any all of them, and every kernel and setting must be there")
     parser.add_argument("--recordings", type=Path, required=True, help="folder that record.py wrote")
     parser.add_argument("--target", type=target_named, action="append", help="gfx906/64 …; all where none is given")
     parser.add_argument("--kernels", type=Path, default=check_kernels.PROJECT / "kernels", help="folder of the sources")
@@ -85,7 +86,6 @@ def parse_arguments():
     parser.add_argument("--seed", type=int, default=1, help="of noise in registers, and of random schedules")
     parser.add_argument("--quantum", type=int, default=0, metavar="N",
                         help="all groups at once, waves by turns at random of up to N instructions")
-    parser.add_argument("--no-coverage", action="store_true", help="do not ask for every kernel and option")
     parser.add_argument("--clang", default="clang-19")
     parser.add_argument("--device-libraries", type=Path, default=check_kernels.device_libraries(),
                         help="folder of ocml.bc")
@@ -129,7 +129,7 @@ def replay_launches(arguments, compiled, launches):
     print_kernels(figures)
     print(f"{compiled.target}: {sum(f[0] for f in figures.values())} launches of {len(figures)} kernels, "
           f"{sum(f[1] for f in figures.values())} wave instructions")
-    if not arguments.no_coverage:
+    if not arguments.scenarios and not arguments.kernel:
         refused += [f"{compiled.target}: coverage: {line}" for line in coverage.missing(arguments.kernels, done)]
         print(f"{compiled.target}: {coverage.summary(arguments.kernels, done)}")
     return refused

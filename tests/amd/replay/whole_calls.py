@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Whole calls: what a launch leaves is what the next one gets, as on a device, in several orders of waves and groups."""
+"""Whole calls: a launch gets what the one before it left, as on a device, in several orders of waves and groups."""
 import hashlib
 
 from comparison import WHOLE_CALL_TOLERANCE, compare
 from launch import Schedule
 from recording import RecordedBuffer
 
-# The last launch of a call, and which arguments are the caller's: positions and velocities.
+# The last launch of a call: it writes the caller's positions and velocities.
 _RESULTS = ("update_velocities", "store_step", "filter_in_one_group")
 
 
@@ -29,7 +29,6 @@ def _follow(compiled, launches, schedule, races):
 def _differences(compiled, launch, held):
     lines = []
     for argument, described in zip(launch.arguments, compiled.kernel(launch).arguments):
-        # float*: the caller's positions, velocities and masses.
         if isinstance(argument, RecordedBuffer) and described.type_name == "float*":
             lines += compare(compiled.kernels, argument.after.read_bytes(), held[argument.number], "float*",
                              WHOLE_CALL_TOLERANCE)[1]
