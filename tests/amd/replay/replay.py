@@ -102,10 +102,14 @@ def print_kernels(figures):
         print(f"{launches:9}{executed:14}{greatest:12.1e}{seconds:9.1f}  {name}")
 
 
+def mnemonics(instructions):
+    """Of a pair that is issued together both."""
+    return {common_name(half.split(" ")[0]) for instruction in instructions for half in instruction.text.split(" :: ")}
+
+
 def print_instructions(compiled):
     code = [instruction for kernel in compiled.all_kernels() for instruction in kernel.instructions]
-    known = {common_name(instruction.mnemonic) for instruction in code}
-    met = {common_name(instruction.mnemonic) for instruction in code if instruction.executed}
+    known, met = mnemonics(code), mnemonics(instruction for instruction in code if instruction.executed)
     places = sum(1 for instruction in code if instruction.executed)
     print(f"{compiled.target}: {len(met)} of {len(known)} mnemonics and {places} of {len(code)} instructions of the "
           "compiled kernels executed")

@@ -3,8 +3,9 @@
 
 #include "support/meshes.hpp"
 
-#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace apsl::test {
 namespace {
