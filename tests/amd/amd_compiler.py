@@ -42,7 +42,8 @@ def compile_source(clang, device_libraries, source, defines, target):
     """Assembly text of the file's kernels, and the compiler's remarks. Raises CompileError."""
     command = [clang, "-x", "cl", "-cl-std=CL1.2", "-target", "amdgcn-amd-amdhsa", f"-mcpu={target.processor}", "-O3",
                "-S", "-o", "-", "-Wall", "-Wextra", "-Wundef", "-Werror", "-Rpass-analysis=kernel-resource-usage",
-               "-fno-caret-diagnostics", "-nogpulib", "-mcode-object-version=5", f"-I{source.parent}"]
+               "-fno-caret-diagnostics", "-nogpulib", "-mcode-object-version=5", "-cl-kernel-arg-info",
+               f"-I{source.parent}"]
     if target.wave_size == 64 and int(target.processor[3:], 16) >= 0x1000:  # RDNA, which else compiles for 32 lanes
         command.append("-mwavefrontsize64")
     command += _device_libraries(Path(device_libraries), target)

@@ -26,6 +26,7 @@ class Argument:
     offset: int  # bytes, in the block of arguments
     size: int  # bytes
     type_name: str
+    name: str
 
 
 @dataclass
@@ -122,7 +123,7 @@ def _arguments(entry):
     for text in re.split(r"^      - ", block, flags=re.MULTILINE)[1:]:
         fields = dict(re.findall(r"\.(\w+): +(.*)$", text, re.MULTILINE))
         found.append(Argument(fields["value_kind"], int(fields["offset"]), int(fields["size"]),
-                              fields.get("type_name", "").strip("'")))
+                              fields.get("type_name", "").strip("'"), fields.get("name", "")))
     return found
 
 

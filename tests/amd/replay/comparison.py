@@ -82,6 +82,19 @@ def tolerance_of(kernel):
     return TOLERANCES.get(kernel, TOLERANCE)
 
 
+def compare_partials(kernels, want, got, cloths, tolerance):
+    """The same of the partial results of all work-groups: each kind of them is an array of its own."""
+    kinds = int(re.search(r"#define APSLK_PARTIAL_KINDS (\d+)", (kernels / "layout.h").read_text(encoding="utf-8"))[1])
+    got, want = [np.frombuffer(x, np.float32).reshape(cloths, kinds, -1) for x in (got, want)]
+    wrong, greatest = [], 0.0
+    for kind in range(kinds):
+        share, line = _compare_floats(got[:, kind].ravel(), want[:, kind].ravel(), tolerance)
+        greatest = max(greatest, share)
+        if line:
+            wrong.append(f"kind {kind}: {line}")
+    return greatest, wrong
+
+
 def compare(kernels, want, got, type_name, tolerance):
     """The greatest difference of floats, as a share, and lines on what is wrong. `kernels`: folder of the sources;
     `want`, `got`: the bytes of a buffer, which holds what an argument of the type `type_name` points to."""

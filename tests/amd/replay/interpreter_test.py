@@ -2,6 +2,7 @@
 """The interpreter itself: instructions against values worked out by hand or in exact arithmetic, what it must refuse,
 races, comparison and coverage."""
 import random
+import re
 import sys
 import unittest
 from fractions import Fraction
@@ -16,7 +17,7 @@ import check_kernels  # noqa: E402
 import coverage  # noqa: E402
 import float_arithmetic as floats  # noqa: E402
 from assembly import UnknownInstruction, kernels_of, parse_instruction  # noqa: E402
-from comparison import TOLERANCE, compare  # noqa: E402
+from comparison import TOLERANCE, compare, compare_partials  # noqa: E402
 from launch import Grid, run  # noqa: E402
 from memory import DeviceMemory, Fault, LocalMemory  # noqa: E402
 from operands import EXEC, VCC  # noqa: E402
@@ -354,6 +355,15 @@ class Comparison(unittest.TestCase):
         want, got = bytearray(size), bytearray(size)
         got[8] = 1
         self.assertIn("iterating", compare(KERNELS, bytes(want), bytes(got), "apslk_solve_state*", TOLERANCE)[1][0])
+
+    def test_each_kind_of_partial_result_has_a_size_of_its_own(self):
+        kinds = int(re.search(r"PARTIAL_KINDS (\d+)", (KERNELS / "layout.h").read_text(encoding="utf-8"))[1])
+        want, got = np.ones((2, kinds, 3), np.float32), np.ones((2, kinds, 3), np.float32)
+        want[:, 4], got[:, 4] = 1e6, 1e6
+        got[1, 7, 2] = 1.001
+        lines = compare_partials(KERNELS, want.tobytes(), got.tobytes(), 2, TOLERANCE)[1]
+        self.assertEqual(len(lines), 1)
+        self.assertTrue(lines[0].startswith("kind 7: off by 0.001"), lines)
 
     def test_a_gradient_may_be_rounded_to_either_side(self):
         want, near, far = (np.zeros(16, np.int16) for _ in range(3))

@@ -42,6 +42,10 @@ def record(arguments, scenario):
 def main():
     arguments = parse_arguments()
     arguments.recordings.mkdir(parents=True, exist_ok=True)
+    if not arguments.scenarios:
+        for folder in arguments.recordings.iterdir():  # of scenarios that are no more
+            if (folder / "index.txt").exists():
+                shutil.rmtree(folder)
     scenarios = arguments.scenarios or names(arguments.program) + (
         names(arguments.program, "--further") if arguments.further else [])
     failed = 0

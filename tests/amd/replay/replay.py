@@ -21,7 +21,7 @@ import coverage  # noqa: E402
 import variants  # noqa: E402
 import whole_calls  # noqa: E402
 from assembly import UnknownInstruction, common_name  # noqa: E402
-from comparison import compare, tolerance_of  # noqa: E402
+from comparison import compare, compare_partials, tolerance_of  # noqa: E402
 from compiled import Compiled  # noqa: E402
 from launch import Schedule  # noqa: E402
 from memory import Fault  # noqa: E402
@@ -43,10 +43,13 @@ def replay(compiled, launch, schedule=Schedule(), races=False):
     wrong, greatest = [f"race: {race}" for race in sorted(found or ())], 0.0
     for number, (argument, described) in enumerate(zip(launch.arguments, compiled.kernel(launch).arguments)):
         if isinstance(argument, RecordedBuffer):
-            share, lines = compare(compiled.kernels, contents(argument.after), held[argument.number],
-                                   described.type_name, tolerance_of(launch.kernel))
+            buffers, tolerance = (contents(argument.after), held[argument.number]), tolerance_of(launch.kernel)
+            if described.name == "partials":
+                share, lines = compare_partials(compiled.kernels, *buffers, launch.grid.cloths, tolerance)
+            else:
+                share, lines = compare(compiled.kernels, *buffers, described.type_name, tolerance)
             greatest = max(greatest, share)
-            wrong += [f"argument {number}, {described.type_name}: {line}" for line in lines]
+            wrong += [f"argument {number}, {described.name}: {line}" for line in lines]
     return executed, greatest, wrong
 
 
