@@ -16,6 +16,8 @@ TOLERANCES = {
     "finish_solve": 2e-4,  # up to 20 CG iterations, each of which amplifies the roundings of those before
     "filter_in_one_group": 5e-4,  # a whole call; velocities are differences of positions over a time step
 }
+# Vectors of a solve that has ended, near zero and of no more use.
+LEFT_BY_SOLVES = {"filter_in_one_group": {"residual", "product", "direction", "direction_product"}}
 # Of the caller's positions and velocities, where each launch starts from what the last one left.
 WHOLE_CALL_TOLERANCE = 1e-3
 # A gradient's components are whole numbers that a float was rounded to: it may lie on the edge between two.
