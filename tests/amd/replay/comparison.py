@@ -13,7 +13,7 @@ import numpy as np
 TOLERANCE = 2e-6
 TOLERANCES = {
     "assemble_gradients": 5e-5,  # a stretch at its ceiling is the difference of nearly equal numbers
-    "finish_solve": 2e-4,  # up to 20 CG iterations, each of which amplifies the roundings of those before
+    "finish_solve": 2e-4,  # up to 24 CG iterations, each of which amplifies the roundings of those before
     "filter_in_one_group": 5e-4,  # a whole call; velocities are differences of positions over a time step
 }
 # Vectors of a solve that has ended, near zero and of no more use.
