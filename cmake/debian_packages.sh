@@ -23,6 +23,8 @@ if [[ "${1:-}" == "--tests" ]]; then
     python3-dev python3-venv
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
+    # the machine code, interpreted
+    python3-numpy
     # the fuzzers of the readers
     libclang-rt-19-dev
   )
