@@ -26,6 +26,17 @@ class Options(TypedDict, total=False):
     integrates: bool  # a call is a whole time step: it returns positions too
 
 
+class DeviceOptions(Options, total=False):
+    """Options of a limiter in a context of yours: also where the numbers lie in its buffers."""
+
+    position_stride: int  # floats, from one position to the next
+    velocity_stride: int
+    position_component_stride: int  # floats, from x to y and from y to z
+    velocity_component_stride: int
+    inverse_mass_stride: int  # floats
+    positions_only: bool  # no velocities: positions are those at the end of the step, corrected in place
+
+
 class Parameters(TypedDict, total=False):
     """What may change from call to call. Defaults: StrainLimiter.default_parameters()."""
 
