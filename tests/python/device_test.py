@@ -159,7 +159,8 @@ class Queued(unittest.TestCase):
         made, arrays = on_device(cloth.triangles, cloth.vertex_count), [array(each) for each in cloth.arrays()]
         arrays[1].fill(0)
         gate, other = cl.UserEvent(CONTEXT), cl.CommandQueue(CONTEXT)
-        arrays[1].add_event(cl.enqueue_copy(QUEUE, arrays[1].data, cloth.velocities, is_blocking=False, wait_for=[gate]))
+        arrays[1].add_event(
+            cl.enqueue_copy(QUEUE, arrays[1].data, cloth.velocities, is_blocking=False, wait_for=[gate]))
         event = made.enqueue(other, *arrays)
         gate.set_status(cl.command_execution_status.COMPLETE)
         event.wait()
@@ -276,7 +277,7 @@ class Refused(unittest.TestCase):
                     CORNER, CORNER, [1, 1, 1], [0.5])
         self.refuse("step: the limiter was made with a context", self.made.step, CORNER, CORNER, [1, 1, 1], [0.5])
         without = limiter(ONE_TRIANGLE, 3)
-        self.refuse("enqueue: the limiter was made without a context, expected apsl.StrainLimiter(…, context=…)",
+        self.refuse("enqueue: the limiter was made without a context, expected StrainLimiter(…, context=…)",
                     without.enqueue, **self.arguments)
         self.refuse("read_stats: the limiter was made without a context", without.read_stats, QUEUE)
 

@@ -20,7 +20,7 @@ velocities, stats = limiter.limit(np.zeros((3, 3)), [[0, 0, 0]] * 3, [1, 1, 1], 
 velocities.astype(np.float64)
 on_device = apsl.StrainLimiter([[0, 1, 2]], 3, context=1, position_stride=4)
 array = (2, 64)
-on_device.enqueue(3, array, 4, array, array, wait_for=[5], time_step=1 / 60)
+on_device.enqueue(3, array, 4, array, array, wait_for=[5], time_step=1 / 60, rest_shapes=array)
 residual: float = on_device.read_stats(3).residual
 best: float = min(stats.max_area_change, apsl.area_change(velocities, [[0, 1, 2]], [1.0]).max())
 """
@@ -51,7 +51,8 @@ class Types(unittest.TestCase):
     def test_stubs_are_the_module_s(self):
         with tempfile.TemporaryDirectory() as folder:
             allowed = Path(folder) / "allowed"
-            allowed.write_text("apsl\\._core\\.(Device)?Limiter\n")  # its metaclass is pybind11's own, which has no stub
+            # Their metaclass is pybind11's own, which has no stub.
+            allowed.write_text("apsl\\._core\\.(Device)?Limiter\n")
             result = mypy("mypy.stubtest", "apsl", "--allowlist", str(allowed))
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 

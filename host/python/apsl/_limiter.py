@@ -85,11 +85,10 @@ class StrainLimiter:
         are those at the end of the step.
 
         queue: a pyopencl.CommandQueue of the context and device. Arrays: what limit() takes, 32-bit floats laid out as
-        the options say, each a pyopencl.array.Array, a pyopencl.Buffer, or a pair of a buffer and an offset in bytes.
-        velocities: None with positions_only. So are `rest_shapes` with limits_stretch, `regularization` with
-        regularization_per_triangle and `stretch_ceiling` with stretch_ceiling_per_triangle. wait_for: events that the
-        call starts after, besides those of the Arrays. Every OpenCL object may be its handle, an integer, in its place.
-        Buffers must live until the event completes.
+        the options say, each a pyopencl.array.Array, a pyopencl.Buffer, or a pair of a buffer and an offset in bytes;
+        to be kept until the event completes. So are `rest_shapes`, and where there is one for each triangle
+        `regularization` and `stretch_ceiling`. velocities: None with positions_only. wait_for: a list of events that
+        the call starts after, besides those of the Arrays. In place of any OpenCL object its handle as an integer.
         Returns a pyopencl.Event, or where pyopencl is not imported the handle of an event, which the caller releases.
         Raises Error for what does not fit, before anything is queued.
         """
@@ -107,7 +106,7 @@ class StrainLimiter:
                     raise _opencl.refuse(name, "nothing", f"an array (limiter made with {option})")
                 given[name] = settings.pop(name)
         places = {name: _opencl.place(array, name, *layouts[name]) for name, array in given.items()}
-        before = _opencl.addresses(wait_for or [])
+        before = _opencl.addresses(wait_for)
         for array in given.values():
             before += _opencl.events_of(array)
         return _opencl.event(made.enqueue(_opencl.address(queue, "queue", "CommandQueue"), places, before, **settings))
@@ -117,8 +116,8 @@ class StrainLimiter:
         the call's, give its event as wait_for. Before the first call all is zero.
         """
         made = self._without_copies("read_stats")
-        return Stats(**made.read_stats(_opencl.address(queue, "queue", "CommandQueue"),
-                                       _opencl.addresses(wait_for or [])))
+        stats = made.read_stats(_opencl.address(queue, "queue", "CommandQueue"), _opencl.addresses(wait_for))
+        return Stats(**stats)
 
     @staticmethod
     def default_parameters() -> dict[str, Any]:
@@ -142,7 +141,7 @@ class StrainLimiter:
 
     def _without_copies(self, call: str) -> _core.DeviceLimiter:
         if isinstance(self._limiter, _core.Limiter):
-            raise Error(f"{call}: the limiter was made without a context, expected apsl.StrainLimiter(…, context=…)")
+            raise Error(f"{call}: the limiter was made without a context, expected StrainLimiter(…, context=…)")
         return self._limiter
 
 

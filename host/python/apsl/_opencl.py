@@ -70,6 +70,8 @@ def address(given: object, argument: str, kind: str) -> int:
 
 def addresses(events: Any) -> list[int]:
     """Of the argument wait_for."""
+    if events is None:
+        return []
     if not isinstance(events, (list, tuple)):
         raise refuse("wait_for", type(events).__name__, "a list of events")
     return [address(event, f"wait_for[{number}]", "Event") for number, event in enumerate(events)]
