@@ -54,16 +54,19 @@ class Processes(unittest.TestCase):
 
     def test_a_forked_process_ends(self):
         # Not by multiprocessing: objects are destroyed at its end.
-        script = ("import os, sys, apsl\n"
-                  "from cloth import ONE_TRIANGLE, limiter\n"
-                  "made = limiter(ONE_TRIANGLE, 3)\n"
-                  "child = os.fork()\n"
-                  "if child == 0:\n"
-                  "    del made\n"
-                  "    sys.exit(7)\n"
-                  "sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))\n")
-        ended = subprocess.run([sys.executable, "-c", script], timeout=SECONDS, cwd=os.path.dirname(__file__))
-        self.assertEqual(ended.returncode, 7)
+        in_a_context = ("import pyopencl\n"
+                        "context = pyopencl.Context(pyopencl.get_platforms()[0].get_devices()[:1])\n"
+                        "made = apsl.StrainLimiter(ONE_TRIANGLE, 3, context=context)\n")
+        for making in ("made = limiter(ONE_TRIANGLE, 3)\n", in_a_context):
+            script = ("import os, sys, apsl\n"
+                      "from cloth import ONE_TRIANGLE, limiter\n" + making +
+                      "child = os.fork()\n"
+                      "if child == 0:\n"
+                      "    del made\n"
+                      "    sys.exit(7)\n"
+                      "sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))\n")
+            ended = subprocess.run([sys.executable, "-c", script], timeout=SECONDS, cwd=os.path.dirname(__file__))
+            self.assertEqual(ended.returncode, 7, making)
 
     def run_script(self, script):
         ended = subprocess.run([sys.executable, "-c", script], timeout=SECONDS, cwd=os.path.dirname(__file__),
