@@ -7,6 +7,7 @@ Usage: gpu_script_test.py BUILD_FOLDER PROJECT_FOLDER
 import json
 import os
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -17,6 +18,7 @@ import jsonschema
 
 build, project = Path(sys.argv[1]), Path(sys.argv[2])
 PACK = project / "bench/gpu_bundle.sh"
+DEVICE = 2  # the device's row of a trace
 POCL = Path("/etc/OpenCL/vendors/pocl.icd").read_text().strip()
 # One test of each program, and the smallest cloth that has an inner vertex.
 TINY = ["--tests", "*nothing is *", "--grids", "3", "--copy-megabytes", "1"]
@@ -37,9 +39,9 @@ class GpuScript(unittest.TestCase):
         packed = run(PACK, build, cls.bundle)
         assert packed.returncode == 0, packed.stdout + packed.stderr
 
-    def measure(self, out, *options, driver=POCL):
+    def measure(self, out, *options, driver=POCL, **environment):
         drivers = ["--driver", driver] if driver else []
-        return run(self.bundle / "gpu.sh", *drivers, *options, self.bundle, self.folder / out)
+        return run(self.bundle / "gpu.sh", *drivers, *options, self.bundle, self.folder / out, **environment)
 
     def summary(self, out):
         return json.loads((self.folder / out / "summary.json").read_text())
@@ -60,7 +62,8 @@ class GpuScript(unittest.TestCase):
             self.assertGreater(part["bound"], part["seconds"])
             self.assertTrue((self.folder / "passed" / f"{part['part']}.log").exists())
             self.assertIn(part["told"], done.stdout)
-        self.assertIn("test case", summary["parts"][0]["told"])
+        for part in summary["parts"][:2]:
+            self.assertEqual(part["told"], "1 of 1 test cases passed, 0 failed")
         self.assertIn("8 triangles: a frame takes", summary["parts"][3]["told"])
         self.assertIn("Portable Computing Language", summary["platform"])
         for key in ("device", "driver"):
@@ -71,9 +74,19 @@ class GpuScript(unittest.TestCase):
         rows = json.loads((self.folder / "passed/kernels_3.json").read_text())
         jsonschema.validate(rows, json.loads((project / "docs/benchmark.schema.json").read_text()))
         self.assertEqual({(row["commit"], row["triangles"]) for row in rows}, {(summary["commit"], 8)})
-        trace = json.loads((self.folder / "passed/frames_3.json").read_text())
-        self.assertEqual({event["args"]["frame"] for event in trace["traceEvents"] if event["ph"] == "X"},
-                         set(range(10)))
+        self.compare_frame_times(self.folder / "passed/frames_3.json", summary["parts"][3]["told"])
+
+    def compare_frame_times(self, path, told):
+        device = [event for event in json.loads(path.read_text())["traceEvents"]
+                  if event["ph"] == "X" and event["tid"] == DEVICE]
+        frames = [[event for event in device if event["args"]["frame"] == frame] for frame in range(10)]
+        ends = [frame[-1]["ts"] + frame[-1]["dur"] for frame in frames]
+        whole = statistics.median(after - before for before, after in zip(ends, ends[1:]))
+        limited = statistics.median(sum(event["dur"] for event in frame if event["name"] == "limit_strain")
+                                    for frame in frames[1:])
+        stated = [float(number) for number in re.findall(r"([0-9.]+) ms", told)]
+        for of_trace, of_program in zip((whole, limited), stated, strict=True):  # µs, ms
+            self.assertAlmostEqual(1e-3 * of_trace, of_program, delta=1e-3)
 
     def test_bundle_needs_nothing_of_the_build(self):
         libraries = {path.name for path in (self.bundle / "lib").iterdir()}
@@ -86,6 +99,18 @@ class GpuScript(unittest.TestCase):
             for name, path in re.findall(r"^\t(\S+) => (\S+)", used, re.MULTILINE):
                 if name not in ("libc.so.6", "libm.so.6"):
                     self.assertTrue(path.startswith(str(self.bundle)), (program.name, name, path))
+
+    def test_libraries_of_the_compiler_are_used_where_the_machine_s_do_not_serve(self):
+        unusable = self.folder / "unusable"
+        unusable.mkdir()
+        (unusable / "libgomp.so.1").write_text("no library")
+        done = self.measure("compiler", "--tests", "*nothing is *", "--grids", "", LD_LIBRARY_PATH=str(unusable))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        (self.bundle / "lib_of_compiler").rename(self.folder / "away")
+        try:
+            self.refused(self.measure("no_compiler", LD_LIBRARY_PATH=str(unusable)), "do not start here: .*libgomp")
+        finally:
+            (self.folder / "away").rename(self.bundle / "lib_of_compiler")
 
     def test_what_takes_too_long_is_ended_and_what_follows_is_run(self):
         done = self.measure("late", "--seconds", "12", "--grids", "65", "--copy-megabytes", "1")
