@@ -9,7 +9,13 @@
 #include <iomanip>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
+
+/// Of a frame on the device, ms.
+struct FrameTimes {
+    double frame, stage;
+};
 
 /// What host and device did when, in Chrome's trace format (chrome://tracing, ui.perfetto.dev): one row for the host's
 /// calls, one for the device's queue, µs since the first call. The queue must have CL_QUEUE_PROFILING_ENABLE.
@@ -53,6 +59,29 @@ public:
         }
         file << "\n]}\n";
         if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
+    }
+
+    /// Only once all commands have ended. Medians: of a frame's time, and of what the stages of that name take of it. A
+    /// stage begins where the one before ended; the first frame, whose kernels run for the first time, is left out.
+    FrameTimes frame_times(std::string_view name) const {
+        std::vector<FrameTimes> frames;
+        for (std::size_t n = 1; n < stages_.size(); ++n) {
+            const Stage& stage = stages_[n];
+            if (stage.frame == 0) continue;
+            if (stage.frame != stages_[n - 1].frame) frames.push_back({0.0, 0.0});
+            const double taken = 1e-3 * (device_time<CL_PROFILING_COMMAND_END>(stage) -
+                                         device_time<CL_PROFILING_COMMAND_END>(stages_[n - 1]));
+            frames.back().frame += taken;
+            if (stage.name == name) frames.back().stage += taken;
+        }
+        const auto median = [&](double FrameTimes::* time) {
+            if (frames.empty()) return 0.0;
+            const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(frames.size() / 2);
+            std::nth_element(frames.begin(), middle, frames.end(),
+                             [&](const FrameTimes& a, const FrameTimes& b) { return a.*time < b.*time; });
+            return *middle.*time;
+        };
+        return {median(&FrameTimes::frame), median(&FrameTimes::stage)};
     }
 
 private:

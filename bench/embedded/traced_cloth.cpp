@@ -6,6 +6,7 @@
 #include "trace.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <iostream>
 #include <string_view>
 
@@ -18,12 +19,13 @@ struct Arguments {
     std::uint32_t grid = 65, device = 0;
     int frames = 90;
     bool out_of_order = false, bench = false;
-    std::string trace;
+    std::string trace, kernels = CLOTH_STEP_CL;
 };
 
 void run(const Arguments& arguments) {
     Cloth cloth(choose_device(arguments.device), arguments.grid,
-                (arguments.out_of_order ? CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE : 0) | CL_QUEUE_PROFILING_ENABLE);
+                (arguments.out_of_order ? CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE : 0) | CL_QUEUE_PROFILING_ENABLE,
+                arguments.kernels);
     if (arguments.bench) cloth.parameters = bench_parameters;
     Trace trace;
     cloth.on_queued = [&](const char* stage, const cl::Event& last) {
@@ -35,6 +37,10 @@ void run(const Arguments& arguments) {
     }
     (void)cloth.read_stats();  // waits for all
     trace.write(arguments.trace);
+    if (!arguments.bench) return;
+    const FrameTimes times = trace.frame_times("limit_strain");
+    std::printf("%zu triangles: a frame takes %.3f ms, limit_strain %.3f ms of it (the device's clock, median frame)\n",
+                cloth.mesh().topology->triangle_count(), times.frame, times.stage);
 }
 
 }  // namespace
@@ -47,7 +53,9 @@ int main(int argc, char** argv) {
     app.add_option("--frames", arguments.frames, "of 1/60 s")->check(CLI::Range(1, 100000))->capture_default_str();
     app.add_flag("--out-of-order", arguments.out_of_order, "on an out-of-order queue");
     app.add_option("--device", arguments.device, "its number over all platforms")->capture_default_str();
-    app.add_flag("--bench", arguments.bench, "limit as bench/kernels does: 10 sub-steps of exactly 3 CG iterations");
+    app.add_flag("--bench", arguments.bench,
+                 "limit as bench/kernels does: 10 sub-steps of exactly 3 CG iterations; print what a frame takes");
+    app.add_option("--kernels", arguments.kernels, "where scenes/embedded/cloth_step.cl is")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     try {
         run(arguments);

@@ -38,15 +38,16 @@ struct Spring {  // as in cloth_step.cl
 /// makes nothing, waits for nothing, reads nothing back.
 class Cloth {
 public:
-    /// `grid` vertices a side.
-    Cloth(const cl::Device& device, std::uint32_t grid, cl_command_queue_properties queue_properties)
+    /// `grid` vertices a side. `kernels`: where cloth_step.cl is.
+    Cloth(const cl::Device& device, std::uint32_t grid, cl_command_queue_properties queue_properties,
+          const std::string& kernels = CLOTH_STEP_CL)
         : mesh_(square(grid, 1.5f)),
           context_(device),
           queue_(context_, device, queue_properties),
           out_of_order_((queue_properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0),
           limiter_(context_(), device(), mesh_.topology) {
         make_buffers(grid);
-        make_kernels();
+        make_kernels(kernels);
     }
 
     void frame() {
@@ -143,10 +144,10 @@ private:
         springs_ = upload(springs);
     }
 
-    void make_kernels() {
+    void make_kernels(const std::string& path) {
         const std::size_t vertex_count = mesh_.topology->vertex_count();
-        std::ifstream file(CLOTH_STEP_CL);
-        if (!file) throw std::runtime_error(CLOTH_STEP_CL ": cannot be read");
+        std::ifstream file(path);
+        if (!file) throw std::runtime_error(path + ": cannot be read");
         const cl::Program program(context_, std::string(std::istreambuf_iterator<char>(file), {}));
         program.build("-cl-std=CL1.2");
         padded_vertices_ = cl::NDRange((vertex_count + 63) / 64 * 64);

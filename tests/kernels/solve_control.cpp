@@ -146,7 +146,8 @@ TEST_CASE("judge_whole_step: with a stretch ceiling sub-steps follow the excess,
     CHECK(taken(1e30, 0.0f) == 9);
 }
 
-TEST_CASE("end_call: the tension of a call asks the next for sub-steps", "[end_call][stretch_ceiling]") {
+TEST_CASE("end_call: the tension of a call asks the next for sub-steps",
+          "[end_call][stretch_ceiling][exact_division]") {
     const auto asked = [](int sub_steps, double mass_ratio, bool finite) {
         Reported reported({.sub_steps = 30});
         for (const int kind : {APSLK_PARTIAL_MAX_STRETCH, APSLK_PARTIAL_MAX_EXCESS, APSLK_PARTIAL_SQUARED_EXCESS,

@@ -42,7 +42,7 @@ std::size_t place_of(const Placement& at, std::size_t i, std::size_t k) {
 
 }  // namespace
 
-TEST_CASE("store_step: where small steps ended, strides, offsets and awkward sizes", "[store_step]") {
+TEST_CASE("store_step: where small steps ended, strides, offsets and awkward sizes", "[store_step][exact_division]") {
     for (const std::uint32_t group : work_group_sizes())
         for (const auto& [positions, velocities] :
              {std::pair<Placement, Placement>{{3, 0}, {3, 0}}, {{4, 7}, {5, 2}}}) {

@@ -105,7 +105,7 @@ TEST_CASE("update_velocities: what no solve moved keeps its velocity, and a disc
 }
 
 TEST_CASE("update_velocities: after small steps what its corrections add up to, and nothing else",
-          "[update_velocities]") {
+          "[update_velocities][exact_division]") {
     const std::vector<Cloth> cloths{make_cloth(strip(300), 3)};
     Arrays arrays(cloths, Matrix::printed, {.sub_steps = 4, .stepping = Stepping::small_steps}, 2, false, {4, 3},
                   {5, 2});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "patches.hpp"
+#include "support/processor_time.hpp"
 #include "unit/sample_meshes.hpp"
 
 #include <algorithm>
