@@ -198,12 +198,19 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
 #endif
             if (small_step.solved) {
                 x += change;  // its w is zero
-                // After the last part only positions are mended.
-                if (!APSLK_INTEGRATES || small_step.sub_step < small_step.small_steps) step += parts * change;
                 total += parts_left * change;
+#if APSLK_INTEGRATES
+                // After the last part only positions are mended.
+                if (small_step.sub_step < small_step.small_steps) step += parts * change;
             }
-            if (APSLK_INTEGRATES && onward > 0.0f) step = (float4)(after_free_part(free, step.xyz, given), 0.0f);
-            if (APSLK_INTEGRATES || small_step.solved) motion[i] = (float4)(step.xyz, given);
+            if (onward > 0.0f) step = (float4)(after_free_part(free, step.xyz, given), 0.0f);
+            motion[i] = (float4)(step.xyz, given);
+#else
+                step += parts * change;
+                motion[i] = (float4)(step.xyz, given);
+            }
+            (void)free;
+#endif
             total_correction[i] = total;
         }
         moved[i] = x + onward * step;
