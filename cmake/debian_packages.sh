@@ -20,9 +20,11 @@ if [[ "${1:-}" == "--tests" ]]; then
     # the library as a package: HTML documentation, binary interface, pkg-config, Debian packages, a clean system
     doxygen abigail-tools binutils pkg-config lintian debootstrap
     # the Python module in a virtual environment
-    python3-dev python3-venv
+    python3-dev python3-venv python3-pyopencl
     # kernels to AMD machine code, and the formatter
     clang-19 clang-format-19 rocm-device-libs
+    # the machine code, interpreted
+    python3-numpy
     # the fuzzers of the readers
     libclang-rt-19-dev
   )

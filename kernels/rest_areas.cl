@@ -24,6 +24,14 @@ APSLK_INLINE apslk_rest_edges rest_edges(__global const uint* vertex_order, __gl
     return edges;
 }
 
+// Zero where two corners coincide: a compiler that fuses a product with a difference leaves a rounding error there,
+// which would count as a rest area.
+APSLK_INLINE float doubled_area(apslk_rest_edges e) {
+    const float3 third = e.second - e.first;
+    const bool coincide = all(e.first == 0.0f) || all(e.second == 0.0f) || all(third == 0.0f);
+    return coincide ? 0.0f : length(cross(e.first, e.second));
+}
+
 APSLK_KERNEL void rest_areas(__global const apslk_cloth* cloths, __global const uint* vertex_order,
                              __global const uint* triangle_order, __global const uint* triangles,
                              __global const float* rest_positions, ulong rest_position_offset, __global float* areas,
@@ -33,7 +41,7 @@ APSLK_KERNEL void rest_areas(__global const apslk_cloth* cloths, __global const 
     for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
         const apslk_rest_edges e = rest_edges(vertex_order, triangles, rest_positions + rest_position_offset, a);
-        areas[area_offset + triangle_order[a]] = 0.5f * length(cross(e.first, e.second));
+        areas[area_offset + triangle_order[a]] = 0.5f * doubled_area(e);
     }
 }
 
@@ -49,7 +57,7 @@ APSLK_KERNEL void rest_shapes(__global const apslk_cloth* cloths, __global const
     for (uint t = range.first; t < range.end; t += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + t;
         const apslk_rest_edges e = rest_edges(vertex_order, triangles, rest_positions + rest_position_offset, a);
-        const float base = length(e.first), doubled = length(cross(e.first, e.second));
+        const float base = length(e.first), doubled = doubled_area(e);
         const float height = doubled / base, along = dot(e.first, e.second) / base;
         const float4 shape =
             doubled > 0.0f ? (float4)(1.0f / base, -along / doubled, 0.0f, 1.0f / height) : (float4)(0.0f);

@@ -2,6 +2,7 @@
 #include "devices.hpp"
 
 #include "process.hpp"
+#include "values.hpp"
 
 #include <apsl/error.hpp>
 
@@ -10,6 +11,13 @@ namespace apsl::python {
 std::vector<host::OpenClDevice> devices() {
     enter_opencl();
     return host::opencl_devices();
+}
+
+std::optional<std::size_t> device_number(py::handle device) {
+    if (device.is_none()) return std::nullopt;
+    const py::object number =
+        py::hasattr(device, "number") ? py::object(device.attr("number")) : py::reinterpret_borrow<py::object>(device);
+    return from_python<std::uint32_t>(number, "device");
 }
 
 cl_device_id choose_device(std::optional<std::size_t> wanted) {

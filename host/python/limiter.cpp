@@ -11,13 +11,6 @@
 namespace apsl::python {
 namespace {
 
-std::optional<std::size_t> device_number(py::handle device) {
-    if (device.is_none()) return std::nullopt;
-    const py::object number =
-        py::hasattr(device, "number") ? py::object(device.attr("number")) : py::reinterpret_borrow<py::object>(device);
-    return from_python<std::uint32_t>(number, "device");
-}
-
 // Of each triangle's number what validate() demands of one for all.
 void check_list(const Array<float>& values, const Field<Parameters, float>& field) {
     for (py::ssize_t a = 0; a < values.size(); ++a) {

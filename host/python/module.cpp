@@ -2,8 +2,10 @@
 //
 // apsl._core: the C++ interface as the Python package wants it. What a user sees, and its documentation, is in apsl/.
 #include "areas.hpp"
+#include "device_limiter.hpp"
 #include "devices.hpp"
 #include "limiter.hpp"
+#include "process.hpp"
 
 #include <apsl/version.hpp>
 
@@ -43,6 +45,7 @@ py::list device_dicts() {
 
 PYBIND11_MODULE(_core, module) {
     module.attr("__version__") = APSL_PYTHON_VERSION(APSL_VERSION_MAJOR, APSL_VERSION_MINOR, APSL_VERSION_PATCH);
+    watch_forks();
     py::register_exception_translator(translate);
     module.def("devices", device_dicts);
     module.def("rest_areas", areas, py::arg("positions"), py::arg("triangles"));
@@ -54,6 +57,14 @@ PYBIND11_MODULE(_core, module) {
         .def("limit", &Limiter::limit)
         .def_property_readonly("options", &Limiter::options)
         .def_property_readonly("scratch_bytes", &Limiter::scratch_bytes);
+    py::class_<DeviceLimiter>(module, "DeviceLimiter")
+        .def(py::init<py::handle, py::handle, DeviceLimiter::Address, py::handle, const py::kwargs&>())
+        .def("enqueue", &DeviceLimiter::enqueue)
+        .def("read_stats", &DeviceLimiter::read_stats)
+        .def_property_readonly("vertex_count", &DeviceLimiter::vertex_count)
+        .def_property_readonly("triangle_count", &DeviceLimiter::triangle_count)
+        .def_property_readonly("options", &DeviceLimiter::options)
+        .def_property_readonly("scratch_bytes", &DeviceLimiter::scratch_bytes);
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 
 namespace apsl::python {
 
-/// To be called ahead of OpenCL. Throws Error(unsupported) in a process forked from one that had called this: the
-/// drivers' threads stayed there, and a call would wait for them without end.
-void enter_opencl();
+/// Once, when the module is loaded: has forks noticed from then on.
+void watch_forks();
 
-/// Whether enter_opencl would throw.
-bool forked_from_opencl();
+/// To be called ahead of OpenCL. Throws Error(unsupported) in a process forked from one that had called this, or that
+/// had an OpenCL driver in it at all: the drivers' threads stayed there, and a call would wait for them without end.
+void enter_opencl();
 
 }  // namespace apsl::python

@@ -38,11 +38,12 @@ def _device_libraries(folder, target):
     return [word for name in names for word in ("-Xclang", "-mlink-builtin-bitcode", "-Xclang", f"{folder / name}.bc")]
 
 
-def compile_kernels(clang, device_libraries, source, defines, target):
-    """A list of Usage, one for each kernel of the file. Raises CompileError."""
+def compile_source(clang, device_libraries, source, defines, target):
+    """Assembly text of the file's kernels, and the compiler's remarks. Raises CompileError."""
     command = [clang, "-x", "cl", "-cl-std=CL1.2", "-target", "amdgcn-amd-amdhsa", f"-mcpu={target.processor}", "-O3",
                "-S", "-o", "-", "-Wall", "-Wextra", "-Wundef", "-Werror", "-Rpass-analysis=kernel-resource-usage",
-               "-fno-caret-diagnostics", "-nogpulib", "-mcode-object-version=5", f"-I{source.parent}"]
+               "-fno-caret-diagnostics", "-nogpulib", "-mcode-object-version=5", "-cl-kernel-arg-info",
+               f"-I{source.parent}"]
     if target.wave_size == 64 and int(target.processor[3:], 16) >= 0x1000:  # RDNA, which else compiles for 32 lanes
         command.append("-mwavefrontsize64")
     command += _device_libraries(Path(device_libraries), target)
@@ -51,7 +52,12 @@ def compile_kernels(clang, device_libraries, source, defines, target):
     if result.returncode != 0:
         lines = [line for line in result.stderr.splitlines() if "remark:" not in line]
         raise CompileError("\n".join(lines))
-    return _usages(result.stdout, result.stderr)
+    return result.stdout, result.stderr
+
+
+def compile_kernels(clang, device_libraries, source, defines, target):
+    """A list of Usage, one for each kernel of the file. Raises CompileError."""
+    return _usages(*compile_source(clang, device_libraries, source, defines, target))
 
 
 def _usages(assembly, remarks):

@@ -23,6 +23,14 @@ def device_libraries():
     return Path(next(iter(glob.glob("/usr/lib/*/amdgcn/bitcode")), "."))
 
 
+def require_compiler(parser, arguments):
+    """Ends with a line and status 2 where the compiler or AMD's libraries are missing."""
+    if not shutil.which(arguments.clang):
+        parser.error(f"{arguments.clang} was not found, expected clang 19 with the AMDGPU target (Debian: clang-19)")
+    if not (arguments.device_libraries / "ocml.bc").exists():
+        parser.error("AMD's device libraries were not found, expected ocml.bc (Debian: rocm-device-libs)")
+
+
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kernels", type=Path, default=PROJECT / "kernels", help="folder of the .cl files")
@@ -35,10 +43,7 @@ def parse_arguments():
     parser.add_argument("--device-libraries", type=Path, default=device_libraries(), help="folder of ocml.bc")
     parser.add_argument("--jobs", type=int, default=2, help="compilers at a time")
     arguments = parser.parse_args()
-    if not shutil.which(arguments.clang):
-        parser.error(f"{arguments.clang} was not found, expected clang 19 with the AMDGPU target (Debian: clang-19)")
-    if not (arguments.device_libraries / "ocml.bc").exists():
-        parser.error("AMD's device libraries were not found, expected ocml.bc (Debian: rocm-device-libs)")
+    require_compiler(parser, arguments)
     return arguments
 
 

@@ -175,7 +175,7 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       direction_product(poison<float>(adjacency.triangle_count)),
       pressure(poison<float>(2 * adjacency.triangle_count)),
       vertex_bounds(poison<float>(adjacency.vertex_count)),
-      start_errors(poison<float>((APSLK_HELD_EXCESS + 1) * adjacency.triangle_count)),
+      start_errors(with_stretches(poisoned_triangles(), APSLK_HELD_EXCESS)),
       ordered_rest(ordered_rest_values()),
       ordered_scaling(over_triangles([&](std::size_t c, std::size_t a) { return sources[c].regularization[a]; })),
       caller_positions(placed(sources, &Cloth::positions, 3, position)),

@@ -76,10 +76,10 @@ struct Arrays {
     std::vector<float> padding_of(const std::vector<float>& per_triangle) const;
     /// What order_triangle_values and order_stretch_limits make of the cloths.
     std::vector<float> ordered_rest_values() const;
-    /// A run of areas with a poisoned one of stretches after it.
+    /// A run of areas with poisoned ones of stretches after it.
     template <class Value>
-    static std::vector<Value> with_stretches(std::vector<Value> areas) {
-        const std::vector<Value> more = poison<Value>(areas.size());
+    static std::vector<Value> with_stretches(std::vector<Value> areas, std::size_t runs = 1) {
+        const std::vector<Value> more = poison<Value>(runs * areas.size());
         areas.insert(areas.end(), more.begin(), more.end());
         return areas;
     }

@@ -18,14 +18,21 @@ import apsl, numpy as np
 limiter = apsl.StrainLimiter(np.zeros((1, 3), int), 3, device=0, warm_start_sub_steps=2, matrix="printed")
 velocities, stats = limiter.limit(np.zeros((3, 3)), [[0, 0, 0]] * 3, [1, 1, 1], [1.0], time_step=1 / 60, sub_steps=3)
 velocities.astype(np.float64)
+on_device = apsl.StrainLimiter([[0, 1, 2]], 3, context=1, position_stride=4)
+array = (2, 64)
+on_device.enqueue(3, array, 4, array, array, wait_for=[5], time_step=1 / 60, rest_shapes=array)
+residual: float = on_device.read_stats(3).residual
 best: float = min(stats.max_area_change, apsl.area_change(velocities, [[0, 1, 2]], [1.0]).max())
 """
 WRONG = {
-    'apsl.StrainLimiter([[0, 1, 2]], "3")': "arg-type",
-    'apsl.StrainLimiter([[0, 1, 2]], 3, matrix="dense")': "arg-type",
-    "apsl.StrainLimiter([[0, 1, 2]], 3, strides=4)": "call-arg",
+    'apsl.StrainLimiter([[0, 1, 2]], "3")': "call-overload",
+    'apsl.StrainLimiter([[0, 1, 2]], 3, matrix="dense")': "call-overload",
+    "apsl.StrainLimiter([[0, 1, 2]], 3, strides=4)": "call-overload",
     'limiter.limit([], [], [], [], sub_steps="ten")': "arg-type",
     "limiter.limit([], [], [], [], sub_step=10)": "call-arg",
+    "apsl.StrainLimiter([[0, 1, 2]], 3, position_stride=4)": "call-overload",
+    'on_device.enqueue("queue", 2, 4, 5, 6)': "arg-type",
+    "on_device.enqueue(3, np.zeros((3, 3)), 4, 5, 6)": "arg-type",
     "stats.maximum": "attr-defined",
 }
 
@@ -44,7 +51,8 @@ class Types(unittest.TestCase):
     def test_stubs_are_the_module_s(self):
         with tempfile.TemporaryDirectory() as folder:
             allowed = Path(folder) / "allowed"
-            allowed.write_text("apsl\\._core\\.Limiter\n")  # its metaclass is pybind11's own, which has no stub
+            # Their metaclass is pybind11's own, which has no stub.
+            allowed.write_text("apsl\\._core\\.(Device)?Limiter\n")
             result = mypy("mypy.stubtest", "apsl", "--allowlist", str(allowed))
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 

@@ -35,7 +35,7 @@ TEST_CASE("the default parameters are legal") {
 TEST_CASE("each parameter out of its range is named, with its value and its range") {
     CHECK(message_of(&Parameters::time_step, 0.0f) == "time_step is 0, expected a finite number > 0 (s)");
     CHECK(message_of(&Parameters::regularization, 0.5f) == "regularization is 0.5, expected a finite number >= 1");
-    CHECK(message_of(&Parameters::sub_steps, -1) == "sub_steps is -1, expected a whole number >= 0");
+    CHECK(message_of(&Parameters::sub_steps, -1) == "sub_steps is -1, expected a whole number >= 0 and <= 10000");
     CHECK(message_of(&Parameters::target_area_change, -0.25f) ==
           "target_area_change is -0.25, expected a finite number >= 0");
     CHECK(message_of(&Parameters::tolerance, 1.0f) == "tolerance is 1, expected a finite number >= 0 and < 1");
@@ -64,7 +64,7 @@ TEST_CASE("more sub-steps where stretch asks for them: what that needs") {
     CHECK(message({.sub_steps = 30, .most_sub_steps = 60}) == "no error");
     CHECK(message({.sub_steps = 30, .most_sub_steps = 29}) ==
           "most_sub_steps is 29, expected 0 (automatic) or a whole number >= sub_steps, which is 30");
-    CHECK(message({.most_sub_steps = -1}) == "most_sub_steps is -1, expected a whole number >= 0");
+    CHECK(message({.most_sub_steps = -1}) == "most_sub_steps is -1, expected a whole number >= 0 and <= 10000");
     const std::string more = "most_sub_steps is 60, more than sub_steps, which needs ";
     CHECK(message({.most_sub_steps = 60}, {}) == more + "limits_stretch on");
     CHECK(message({.most_sub_steps = 60}, {.positions_only = true, .limits_stretch = true}) ==

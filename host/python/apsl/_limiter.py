@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Sequence, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._records import Device, Error, Options, Parameters, Stats
+from . import _core, _opencl
+from ._opencl import DeviceArray, Handle, OpenClObject
+from ._records import Device, DeviceOptions, Error, Options, Parameters, Stats
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -19,15 +20,31 @@ class StrainLimiter:
     Threads may share a limiter: its calls wait for one another. Other threads run Python meanwhile.
     """
 
-    def __init__(self, triangles: npt.ArrayLike, vertex_count: int, device: int | Device | None = None,
-                 **options: Unpack[Options]) -> None:
+    @overload
+    def __init__(self, triangles: npt.ArrayLike, vertex_count: int, device: int | Device | None = None, *,
+                 context: None = None, **options: Unpack[Options]) -> None: ...
+    @overload
+    def __init__(self, triangles: npt.ArrayLike, vertex_count: int, device: int | Device | OpenClObject | None = None,
+                 *, context: Handle, **options: Unpack[DeviceOptions]) -> None: ...
+    def __init__(self, triangles: npt.ArrayLike, vertex_count: int, device: Any = None, *,
+                 context: Handle | None = None, **options: Any) -> None:
         """Compiles the kernels, which takes up to seconds: make it once.
 
         triangles: [T, 3], vertex indices, counter-clockwise. device: a number or entry of devices(); None takes the
         first GPU, else device 0. options: see Options.
+        context: yours, a pyopencl.Context or a cl_context as an integer, for enqueue() in place of limit() and step().
+        It is kept for as long as the limiter lives. device is then one of its devices, also a pyopencl.Device; None
+        takes the only one. options: see DeviceOptions.
         Raises Error for triangles that no topology can be built from, options out of range, no such device.
         """
-        self._limiter = _core.Limiter(triangles, vertex_count, device, **options)
+        self._limiter: _core.Limiter | _core.DeviceLimiter
+        if context is None:
+            self._limiter = _core.Limiter(triangles, vertex_count, device, **options)
+        else:
+            if hasattr(device, "int_ptr"):
+                _opencl.address(device, "device", "Device")
+            self._limiter = _core.DeviceLimiter(triangles, vertex_count,
+                                                _opencl.address(context, "context", "Context"), device, **options)
 
     def limit(self, positions: npt.ArrayLike, velocities: npt.ArrayLike, inverse_masses: npt.ArrayLike,
               rest_areas: npt.ArrayLike, **parameters: Unpack[Parameters]) -> tuple[npt.NDArray[np.float32], Stats]:
@@ -40,9 +57,10 @@ class StrainLimiter:
         Raises Error for shapes, types and parameters that do not fit. Input that is not finite is the status
         "diverged", and the velocities come back as they were.
         """
+        copying = self._with_copies("limit")
         if self.options["integrates"]:
             raise Error("limit: the limiter was made with integrates=True, expected a call of step()")
-        limited, stats = self._limiter.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
+        limited, stats = copying.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
         return limited, Stats(**stats)
 
     def step(self, positions: npt.ArrayLike, velocities: npt.ArrayLike, inverse_masses: npt.ArrayLike,
@@ -53,10 +71,53 @@ class StrainLimiter:
 
         The arguments are those of limit(); velocities are those at the start of the step. Raises Error likewise.
         """
+        copying = self._with_copies("step")
         if not self.options["integrates"]:
             raise Error("step: the limiter was made with integrates=False, expected a call of limit()")
-        moved, limited, stats = self._limiter.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
+        moved, limited, stats = copying.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
         return moved, limited, Stats(**stats)
+
+    def enqueue(self, queue: Handle, positions: DeviceArray, velocities: DeviceArray | None,
+                inverse_masses: DeviceArray, rest_areas: DeviceArray, *, wait_for: Sequence[Handle] | None = None,
+                **parameters: Unpack[Parameters]) -> Any:
+        """Queues a call of a limiter made with a context, on your queue and in your buffers: nothing is copied or
+        waited for. velocities are the limited ones once the event completes; with integrates both they and positions
+        are those at the end of the step.
+
+        queue: a pyopencl.CommandQueue of the context and device. Arrays: what limit() takes, 32-bit floats laid out as
+        the options say, each a pyopencl.array.Array, a pyopencl.Buffer, or a pair of a buffer and an offset in bytes;
+        to be kept until the event completes. So are `rest_shapes`, and where there is one for each triangle
+        `regularization` and `stretch_ceiling`. velocities: None with positions_only. wait_for: a list of events that
+        the call starts after, besides those of the Arrays. In place of any OpenCL object its handle as an integer.
+        Returns a pyopencl.Event, or where pyopencl is not imported the handle of an event, which the caller releases.
+        Raises Error for what does not fit, before anything is queued.
+        """
+        made = self._without_copies("enqueue")
+        options = made.options
+        layouts = _layouts(made.vertex_count, made.triangle_count, options)
+        given: dict[str, Any] = {"positions": positions, "velocities": velocities, "inverse_masses": inverse_masses,
+                                 "rest_areas": rest_areas}
+        if options["positions_only"] and velocities is None:
+            del given["velocities"]
+        settings: dict[str, Any] = {**parameters}
+        for name, option in _optional_arrays.items():
+            if options[option]:
+                if name not in settings:
+                    raise _opencl.refuse(name, "nothing", f"an array (limiter made with {option})")
+                given[name] = settings.pop(name)
+        places = {name: _opencl.place(array, name, *layouts[name]) for name, array in given.items()}
+        before = _opencl.addresses(wait_for)
+        for array in given.values():
+            before += _opencl.events_of(array)
+        return _opencl.event(made.enqueue(_opencl.address(queue, "queue", "CommandQueue"), places, before, **settings))
+
+    def read_stats(self, queue: Handle, *, wait_for: Sequence[Handle] | None = None) -> Stats:
+        """What the last call of enqueue() did, once it has: waits for it. On an out-of-order queue, or another one than
+        the call's, give its event as wait_for. Before the first call all is zero.
+        """
+        made = self._without_copies("read_stats")
+        stats = made.read_stats(_opencl.address(queue, "queue", "CommandQueue"), _opencl.addresses(wait_for))
+        return Stats(**stats)
 
     @staticmethod
     def default_parameters() -> dict[str, Any]:
@@ -72,3 +133,29 @@ class StrainLimiter:
     def scratch_bytes(self) -> int:
         """Device memory that the filter holds; the arrays of a call come on top."""
         return self._limiter.scratch_bytes
+
+    def _with_copies(self, call: str) -> _core.Limiter:
+        if isinstance(self._limiter, _core.DeviceLimiter):
+            raise Error(f"{call}: the limiter was made with a context, expected a call of enqueue()")
+        return self._limiter
+
+    def _without_copies(self, call: str) -> _core.DeviceLimiter:
+        if isinstance(self._limiter, _core.Limiter):
+            raise Error(f"{call}: the limiter was made without a context, expected StrainLimiter(…, context=…)")
+        return self._limiter
+
+
+_optional_arrays = {"regularization": "regularization_per_triangle", "rest_shapes": "limits_stretch",
+                    "stretch_ceiling": "stretch_ceiling_per_triangle"}
+
+
+def _layouts(vertices: int, triangles: int,
+             options: dict[str, Any]) -> dict[str, tuple[tuple[int, ...], tuple[int, ...]]]:
+    """Shape and strides in bytes of each array."""
+    def vectors(of: str) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        return (vertices, 3), (4 * options[f"{of}_stride"], 4 * options[f"{of}_component_stride"])
+
+    numbers = (triangles,), (4,)
+    return {"positions": vectors("position"), "velocities": vectors("velocity"),
+            "inverse_masses": ((vertices,), (4 * options["inverse_mass_stride"],)), "rest_areas": numbers,
+            "regularization": numbers, "rest_shapes": ((triangles, 4), (16, 4)), "stretch_ceiling": numbers}

@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Sequence, TypedDict, Union
+from typing import TYPE_CHECKING, Literal, Sequence, TypedDict, Union
 
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from ._opencl import DeviceArray
 
 
 class Options(TypedDict, total=False):
@@ -26,11 +29,23 @@ class Options(TypedDict, total=False):
     integrates: bool  # a call is a whole time step: it returns positions too
 
 
+class DeviceOptions(Options, total=False):
+    """Options of a limiter in a context of yours: also where the numbers lie in its buffers."""
+
+    position_stride: int  # floats, from one position to the next
+    velocity_stride: int
+    position_component_stride: int  # floats, from x to y and from y to z
+    velocity_component_stride: int
+    inverse_mass_stride: int  # floats
+    positions_only: bool  # no velocities: positions are those at the end of the step, corrected in place
+
+
 class Parameters(TypedDict, total=False):
-    """What may change from call to call. Defaults: StrainLimiter.default_parameters()."""
+    """What may change from call to call. Defaults: StrainLimiter.default_parameters(). Where an array is taken, one on
+    the device is for enqueue()."""
 
     time_step: float  # s, > 0
-    regularization: Union[float, npt.ArrayLike]  # α ≥ 1; an array [T] with regularization_per_triangle
+    regularization: Union[float, npt.ArrayLike, DeviceArray]  # α ≥ 1; an array [T] with regularization_per_triangle
     sub_steps: int  # ≥ 0
     most_sub_steps: int  # ≥ sub_steps: more are taken where stretch asks for them; 0: automatic
     target_area_change: float  # ≥ 0, no further sub-step once every triangle is at or below it
@@ -40,8 +55,8 @@ class Parameters(TypedDict, total=False):
     first_regularization: float  # 0: one α for all sub-steps; else > 1, that of the first
     # 0, or ≥ 1.01: no principal stretch above this multiple of the rest shape; an array [T] with
     # stretch_ceiling_per_triangle
-    stretch_ceiling: Union[float, npt.ArrayLike]
-    rest_shapes: npt.ArrayLike  # 1/m, [T, 4], with limits_stretch: see rest_shapes()
+    stretch_ceiling: Union[float, npt.ArrayLike, DeviceArray]
+    rest_shapes: Union[npt.ArrayLike, DeviceArray]  # 1/m, [T, 4], with limits_stretch: see rest_shapes()
     acceleration: Sequence[float]  # m/s², three, with integrates
     damping: float  # 1/s, ≥ 0, with integrates
     stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small from 20 sub-steps up
