@@ -50,4 +50,5 @@ echo "$commit" >"$bundle/commit"
 if grep -q '^CMAKE_CXX_FLAGS:.*-march=native' "$build/CMakeCache.txt"; then
   echo "warning: $build was built for this machine's processor alone; a build of the preset ci runs on any" >&2
 fi
-echo "$bundle: $(du -sh "$bundle" | cut -f1), commit $commit; there: $(basename "$bundle")/gpu.sh $(basename "$bundle") RESULTS"
+name="$(basename "$bundle")"
+echo "$bundle: $(du -sh "$bundle" | cut -f1), commit $commit; there: $name/gpu.sh $name RESULTS"

@@ -128,6 +128,32 @@ class GpuScript(unittest.TestCase):
         self.assertEqual([part["status"] for part in self.summary("failed")["parts"]],
                          ["passed", "failed", "passed", "passed"])
 
+    def test_a_failing_test_fails_its_part(self):
+        # A program in the tests' place: one passes, one fails, and one selects nothing.
+        broken = self.bundle / "bin/apsl_kernel_tests"
+        kept = broken.rename(self.folder / "apsl_kernel_tests")
+        try:
+            broken.write_text("""#!/bin/bash
+case "$*" in
+  *--list-test-names-only*) printf '%s\\n' 'one, with a comma' 'two [in brackets]' three;;
+  'one\\, with a comma --warn NoTests') echo 'All tests passed (1 assertion in 1 test case)' ;;
+  'two \\[in brackets\\] --warn NoTests') echo 'what it said'; exit 1 ;;
+  three*) echo 'No tests ran' ;;
+esac
+""")
+            broken.chmod(0o755)
+            done = self.measure("broken", "--tests", "*nothing is *", "--grids", "")
+        finally:
+            broken.unlink()
+            kept.rename(broken)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        part = self.summary("broken")["parts"][0]
+        self.assertEqual((part["status"], part["exit"], part["told"]),
+                         ("failed", 1, "1 of 3 test cases passed, 2 failed"))
+        log = (self.folder / "broken/kernel_tests.log").read_text()
+        self.assertIn("what it said\nFAILED with 1: two [in brackets]\n", log)
+        self.assertIn("No tests ran\nFAILED with 0: three\n", log)
+
     def test_a_cloth_beyond_the_memory_is_passed_over(self):
         done = self.measure("large", *TINY[:2], "--grids", "200000")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
