@@ -208,7 +208,7 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("strain_limiting": {"stretch_ceiling": [1.1, 1]})",
          "strain_limiting.stretch_ceiling[1]: expected 0 or a number ≥ 1.01, got 1"},
         {R"("strain_limiting": {"stretch_ceiling": 1.1, "solver": "conjugate_gradient"})",
-         "strain_limiting: limits_stretch is on, which needs solver chebyshev"},
+         "strain_limiting: a stretch ceiling (limits_stretch) needs solver chebyshev"},
         {R"("strain_limiting": {"regularization": 0.99})",
          "strain_limiting.regularization: expected a number ≥ 1, got 0.99"},
         {R"("strain_limiting": {"regularization": [1, 0.5]})",
