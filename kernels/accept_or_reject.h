@@ -54,13 +54,11 @@ APSLK_INLINE apslk_verdict judge(apslk_area_change initial, apslk_area_change ch
                       change.capped_rms > initial.capped_rms;
     const bool at_rest = judged_max(initial) <= change_at_rest;
     apslk_verdict verdict;
-#if APSLK_LIMITS_STRETCH
-    const float let_pass = change.rms < initial.rms ? APSLK_GROWTH_LET_PASS : 1.0f;
+    const float let_pass = APSLK_LIMITS_STRETCH && change.rms < initial.rms ? APSLK_GROWTH_LET_PASS : 1.0f;
     verdict.worse = rose && (at_rest || change.capped_rms >= let_pass * initial.capped_rms);
+#if APSLK_LIMITS_STRETCH
     // Where tension goes unstable all of a cloth explodes, and the cap would hide it.
     verdict.worse = verdict.worse || judged_rms(change) > let_pass * judged_rms(initial);
-#else
-    verdict.worse = rose && (at_rest || change.capped_rms >= initial.capped_rms);
 #endif
     verdict.rose = rose && !at_rest;
     verdict.names = !verdict.worse && judged_max(change) > judged_max(initial);

@@ -31,7 +31,7 @@ APSLK_INLINE float next_asked_sub_steps(float asked, int sub_steps, float mass_r
     return fmax(APSLK_ASKED_KEPT * asked, by_tension);
 }
 
-// The share of the start's area error, and of its excess of stretch, that stays for now.
+// The share of the start's area error that stays for now.
 APSLK_INLINE float start_error_left(int sub_step, int small_steps) {
     const int planned = small_steps - (APSLK_LIMITS_STRETCH ? APSLK_PARTS_OF_LEAD : 1) * (sub_step + 1);
     return planned > 0 ? (float)planned / (float)small_steps : 0.0f;

@@ -114,7 +114,8 @@ std::string ceiling_advice(const RunReport& report) {
     if (count == 0) return {};
     return format("the stretch ceiling was exceeded by up to %.3f, in %td of %zu frames by more than %.1f; raise ",
                   summarize(report.frames).max_stretch_excess, count, report.frames.size(), much) +
-           "strain_limiting.sub_steps (30 suit most cloths, and most_sub_steps for impacts), or see that the pins "
+           "strain_limiting.sub_steps (30 suit most cloths, and most_sub_steps for impacts), take more time steps, or "
+           "see that the pins "
            "leave "
            "the cloth room below its ceiling";
 }

@@ -216,8 +216,8 @@ std::uint32_t StretchLimiting<Real>::rows_at_work() const {
 template <class Real>
 std::size_t StretchLimiting<Real>::bytes() const {
     return shapes_.size() * sizeof(shapes_[0]) + rows_.size() * (sizeof(rows_[0]) + sizeof(owners_[0]) + 1) +
-           (ceilings_.size() + held_excess_.size() + stretch_.size() + share_.size() + inverse_masses_.size() +
-            tension_.size() + stiffness_.size()) *
+           (ceilings_.size() + start_excess_.size() + held_excess_.size() + stretch_.size() + share_.size() +
+            inverse_masses_.size() + tension_.size() + stiffness_.size()) *
                sizeof(Real) +
            static_cast<std::size_t>(system_.J.nonZeros()) * (sizeof(Real) + sizeof(int)) +
            5 * static_cast<std::size_t>(y_.size()) * sizeof(Real);
