@@ -107,7 +107,8 @@ apsl::Options options_from(const apsl_options* options) {
             .bound_interval = o.bound_interval,
             .limits_stretch = o.limits_stretch != 0,
             .stretch_ceiling_per_triangle = o.stretch_ceiling_per_triangle != 0,
-            .integrates = o.integrates != 0};
+            .integrates = o.integrates != 0,
+            .keeps_contacts = o.keeps_contacts != 0};
 }
 
 apsl::Parameters parameters_from(const apsl_parameters& p) {
@@ -201,6 +202,7 @@ apsl_options apsl_default_options(void) {
             o.limits_stretch,
             o.stretch_ceiling_per_triangle,
             o.integrates,
+            o.keeps_contacts,
             {}};
 }
 
@@ -326,7 +328,8 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
                                   .rest_areas = view_from(buffers->rest_areas),
                                   .regularization = view_from(buffers->regularization),
                                   .rest_shapes = view_from(buffers->rest_shapes),
-                                  .stretch_ceilings = view_from(buffers->stretch_ceilings)};
+                                  .stretch_ceilings = view_from(buffers->stretch_ceilings),
+                                  .contacts = view_from(buffers->contacts)};
         const cl_event end = limiter->limiter.enqueue(queue, views, list, events(wait_count, wait_list));
         hand_over(end, event);
     });

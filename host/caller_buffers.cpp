@@ -3,6 +3,7 @@
 
 #include "caller_objects.hpp"
 #include "invalid.hpp"
+#include "kernels/constants.h"
 
 #include <cstdint>
 #include <cstdlib>
@@ -69,6 +70,8 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
     check_optional(options.limits_stretch, buffers.rest_shapes, 4 * counts.triangles, "rest_shapes", "limits_stretch");
     check_optional(options.stretch_ceiling_per_triangle, buffers.stretch_ceilings, counts.triangles, "stretch_ceilings",
                    "stretch_ceiling_per_triangle");
+    check_optional(options.keeps_contacts, buffers.contacts, APSLK_CONTACT_SIZE * counts.vertices, "contacts",
+                   "keeps_contacts");
 }
 
 const BufferView& corrected(const Buffers& buffers) {

@@ -31,7 +31,8 @@ const Kernel& rest_shapes(const Kernel& kernel, const Arrays& a, const BufferVie
 template <class Arrays>
 const Kernel& predict_positions(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.moved,
-                         a.motion, caller.positions, corrected(caller), caller.inverse_masses);
+                         a.motion, caller.positions, corrected(caller), caller.inverse_masses,
+                         or_any(caller.contacts, caller));
 }
 
 template <class Arrays>
@@ -143,10 +144,11 @@ const Kernel& chebyshev_step(const Kernel& kernel, const Arrays& a, const Array&
 
 /// `slot`: of the last iteration's residual, 0 even, 1 odd.
 template <class Arrays, class Array>
-const Kernel& gather_displacements(const Kernel& kernel, const Arrays& a, const Array& pressure, cl_int sub_step,
-                                   cl_uint slot) {
+const Kernel& gather_displacements(const Kernel& kernel, const Arrays& a, const Buffers& caller, const Array& pressure,
+                                   cl_int sub_step, cl_uint slot) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.corner_offsets, a.corners,
-                         a.gradients, pressure, a.moved, a.motion, a.total_correction, sub_step, slot);
+                         a.gradients, pressure, a.moved, a.motion, a.total_correction, a.vertex_order,
+                         or_any(caller.contacts, caller), sub_step, slot);
 }
 
 /// `pressure`: of the last sub-step.
@@ -164,14 +166,14 @@ const Kernel& end_call(const Kernel& kernel, const Arrays& a) {
 
 template <class Arrays>
 const Kernel& update_velocities(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.moved, a.total_correction,
-                         caller.positions, corrected(caller));
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.moved, a.total_correction,
+                         caller.positions, corrected(caller), or_any(caller.contacts, caller));
 }
 
 template <class Arrays>
 const Kernel& store_step(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.moved, a.motion,
-                         caller.positions, caller.velocities);
+                         caller.positions, caller.velocities, or_any(caller.contacts, caller));
 }
 
 /// `pressure_stride`: from one kept pressure to the next, triangles.

@@ -156,8 +156,8 @@ void StrainLimiter::Implementation::queue_assembly(CommandSequence& commands, cl
     launch_one_group(commands, arguments::begin_solve(kernels.begin_solve, arrays, sub_step));
 }
 
-void StrainLimiter::Implementation::queue_conjugate_gradient(CommandSequence& commands, const CallBudget& budget,
-                                                             cl_int sub_step) const {
+void StrainLimiter::Implementation::queue_conjugate_gradient(CommandSequence& commands, const Buffers& buffers,
+                                                             const CallBudget& budget, cl_int sub_step) const {
     const BufferHandle& pressure =
         arrays.pressures[std::min(static_cast<std::size_t>(sub_step), arrays.pressures.size() - 1)];
     queue_assembly(commands, sub_step);
@@ -173,7 +173,8 @@ void StrainLimiter::Implementation::queue_conjugate_gradient(CommandSequence& co
         launch_one_group(commands, arguments::finish_solve(kernels.finish_solve, arrays, pressure, queued));
     // The slot of the residual after the last iteration.
     const auto slot = static_cast<cl_uint>(queued & 1);
-    launch(commands, arguments::gather_displacements(kernels.gather_displacements, arrays, pressure, sub_step, slot));
+    launch(commands,
+           arguments::gather_displacements(kernels.gather_displacements, arrays, buffers, pressure, sub_step, slot));
 }
 
 void StrainLimiter::Implementation::queue_bound(CommandSequence& commands, cl_int sub_step) const {
@@ -188,15 +189,16 @@ void StrainLimiter::Implementation::queue_bound(CommandSequence& commands, cl_in
     launch(commands, arguments::bound_vertices(kernels.bound_vertices, arrays));
 }
 
-void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, const CallBudget& budget,
-                                                    cl_int sub_step) const {
+void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, const Buffers& buffers,
+                                                    const CallBudget& budget, cl_int sub_step) const {
     const BufferHandle& pressure = arrays.pressures[0];
     if (static_cast<std::uint32_t>(sub_step) % options.bound_interval == 0) queue_bound(commands, sub_step);
     queue_assembly(commands, sub_step);
     const cl_int products = queued_products(budget, sub_step, options.limits_stretch);
     for (cl_int k = 0; k < products; ++k)
         launch(commands, arguments::chebyshev_step(kernels.chebyshev_step, arrays, pressure, sub_step, products, k));
-    launch(commands, arguments::gather_displacements(kernels.gather_displacements, arrays, pressure, sub_step, 0));
+    launch(commands,
+           arguments::gather_displacements(kernels.gather_displacements, arrays, buffers, pressure, sub_step, 0));
 }
 
 void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, const Buffers& buffers,
@@ -212,9 +214,9 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
     }
     for (cl_int sub_step = 0; sub_step < budget.sub_steps; ++sub_step)
         if (by_chebyshev())
-            queue_chebyshev(commands, budget, sub_step);
+            queue_chebyshev(commands, buffers, budget, sub_step);
         else
-            queue_conjugate_gradient(commands, budget, sub_step);
+            queue_conjugate_gradient(commands, buffers, budget, sub_step);
     launch(commands, arguments::measure_area_change(kernels.measure_area_change, arrays, arrays.pressures.front()));
     launch_one_group(commands, arguments::end_call(kernels.end_call, arrays));
     if (options.integrates)

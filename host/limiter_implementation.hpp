@@ -85,9 +85,10 @@ private:
     void queue_assembly(host::CommandSequence& commands, cl_int sub_step) const;
     /// Leaves the bounds that sub-step `sub_step` scales the matrix by, of its own geometry.
     void queue_bound(host::CommandSequence& commands, cl_int sub_step) const;
-    void queue_chebyshev(host::CommandSequence& commands, const host::CallBudget& budget, cl_int sub_step) const;
-    void queue_conjugate_gradient(host::CommandSequence& commands, const host::CallBudget& budget,
-                                  cl_int sub_step) const;
+    void queue_chebyshev(host::CommandSequence& commands, const Buffers& buffers, const host::CallBudget& budget,
+                         cl_int sub_step) const;
+    void queue_conjugate_gradient(host::CommandSequence& commands, const Buffers& buffers,
+                                  const host::CallBudget& budget, cl_int sub_step) const;
     void queue_many_groups(host::CommandSequence& commands, const Buffers& buffers,
                            const host::CallBudget& budget) const;
 

@@ -51,7 +51,7 @@ Execution resolve_execution(const Options& options, const DeviceFacts& facts, st
     switch (options.execution) {
         case Execution::automatic:
             return matrix_free_consistent(options) && options.solver == Solver::conjugate_gradient &&
-                           !options.integrates && one_group_fits(options, facts) &&
+                           !options.integrates && !options.keeps_contacts && one_group_fits(options, facts) &&
                            largest <= one_group_triangles(facts)
                        ? Execution::one_group
                        : Execution::many_groups;
@@ -139,6 +139,7 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
            define("APSLK_INVERSE_MASS_STRIDE", options.inverse_mass_stride) +
            define("APSLK_POSITIONS_ONLY", options.positions_only ? 1 : 0) +
            define("APSLK_INTEGRATES", options.integrates ? 1 : 0) +
+           define("APSLK_KEEPS_CONTACTS", options.keeps_contacts ? 1 : 0) +
            define("APSLK_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
            define("APSLK_PATCH_VERTICES", patch_vertices) +
            define("APSLK_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +

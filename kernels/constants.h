@@ -4,6 +4,9 @@
 #ifndef APSLK_CONSTANTS_H
 #define APSLK_CONSTANTS_H
 
+// Numbers a vertex in Buffers::contacts.
+#define APSLK_CONTACT_SIZE 8
+
 // A greatest area change up to which a cloth is at rest: 32-bit positions tell no better.
 #define APSLK_AT_REST 1e-5f
 

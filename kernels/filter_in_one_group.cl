@@ -31,13 +31,14 @@ APSLK_KERNEL void filter_in_one_group(
     __local float4 forces[APSLK_PATCH_VERTICES];
     const uint c = (uint)get_group_id(1);
     __global apslk_stats* stats = all_stats + c;
+    const apslk_touched nothing_touched = {0, vertex_order, 0.0f};
     int sub_steps = 0;
     bool started = false;
 
     const apslk_vertex_sums vertex_sums =
         predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, free_step(parameters + c),
                          small_step_count(parameters[c]) > 0, vertex_order, moved, motion, positions + position_offset,
-                         velocities + velocity_offset, inverse_masses + inverse_mass_offset);
+                         velocities + velocity_offset, inverse_masses + inverse_mass_offset, 0);
     const float bad_vertices = group_sum(vertex_sums.bad, scratch);
     const float log_masses = group_sum(vertex_sums.log_masses, scratch);
     const float extent = group_max(vertex_sums.extent, scratch);
@@ -115,7 +116,7 @@ APSLK_KERNEL void filter_in_one_group(
                                                  raises_masses ? APSLK_HELD_TENSION : INFINITY};
             if (in_small_steps)  // uniform
                 advance_vertices(cloths[c], true, small_step, free_part(parameters + c), corner_offsets, corners,
-                                 gradients, pressure, moved, motion, total_correction);
+                                 gradients, pressure, moved, motion, total_correction, nothing_touched);
             else
                 displace_vertices(cloths[c], solved, corner_offsets, corners, gradients, pressure, moved);
             const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_squared_residual;
@@ -157,6 +158,8 @@ APSLK_KERNEL void filter_in_one_group(
     group_memory_barrier();
     name_offender(stats, search_for(broken, bad_vertex, verdict, change.max), cloths[c], vertex_order, triangle_order,
                   triangles, moved, ordered_rest_areas, scratch);
-    store_corrections(cloths[c], !states[c].discarded, parameters[c].time_step, small_step_count(parameters[c]) > 0,
-                      vertex_order, moved, total_correction, positions + position_offset, velocities + velocity_offset);
+    const bool limited = !states[c].discarded;
+    store_corrections(cloths[c], limited, limited, parameters[c].time_step, small_step_count(parameters[c]) > 0,
+                      vertex_order, moved, total_correction, positions + position_offset, velocities + velocity_offset,
+                      0);
 }

@@ -4,6 +4,7 @@
 #ifndef APSLK_VERTEX_MOTION_H
 #define APSLK_VERTEX_MOTION_H
 
+#include "contact.h"
 #include "effective_mass.h"
 #include "free_motion.h"
 #include "gradients.h"
@@ -57,20 +58,25 @@ APSLK_INLINE float3 load_velocity(__global const float* velocities, uint vertex)
     return load_vector(velocities + (ulong)vertex * APSLK_VELOCITY_STRIDE, APSLK_VELOCITY_COMPONENT_STRIDE);
 }
 
-// x̃ + Δt ṽ of the caller's vertex, ṽ as `free` has it. Where there are no velocities, `velocities` is the positions,
-// in and out, and this the position as given, to the bit: one pointer in place of two, which the large kernel has no
-// registers for.
-APSLK_INLINE float3 end_of_step(__global const float* positions, __global const float* velocities, uint vertex,
-                                float inverse_mass, float time_step, apslk_free_step free) {
+// x̃ + Δt ṽ of the caller's vertex, ṽ as `free` has it, outside of what it touches, and Δt times the velocity at the
+// end. Where there are no velocities, `velocities` is the positions, in and out, and this the position as given, to the
+// bit: one pointer in place of two, which the large kernel has no registers for.
+APSLK_INLINE apslk_moving_vertex end_of_step(__global const float* positions, __global const float* velocities,
+                                             uint vertex, float inverse_mass, float time_step, apslk_free_step free,
+                                             __global const float* contacts) {
 #if APSLK_POSITIONS_ONLY
     (void)positions;
     (void)time_step;
     (void)inverse_mass;
     (void)free;
-    return load_position(velocities, vertex);
+    (void)contacts;
+    const apslk_moving_vertex end = {load_position(velocities, vertex), (float3)(0.0f), (float3)(0.0f), false};
+    return end;
 #else
-    return predicted_position(load_position(positions, vertex),
-                              mean_of_free_step(free, load_velocity(velocities, vertex), inverse_mass), time_step);
+    const float3 start = load_position(positions, vertex), velocity = load_velocity(velocities, vertex);
+    const float3 x = predicted_position(start, mean_of_free_step(free, velocity, inverse_mass), time_step);
+    const apslk_moving_vertex end = {x, time_step * after_free_step(free, velocity, inverse_mass), x - start, false};
+    return inverse_mass > 0.0f ? kept_outside(end, contacts, vertex, end_of_the_step(time_step)) : end;
 #endif
 }
 
@@ -86,19 +92,19 @@ typedef struct {
     float extent;      // greatest |coordinate|, m
 } apslk_vertex_sums;
 
-// moved = (x̃ + Δt ṽ, w), and before small steps motion = (x̃, w), in the limiter's order of vertices. Returns this
-// work-item's sums.
+// moved = (x̃ + Δt ṽ outside of contacts, w), and before small steps motion = (x̃, w), in the limiter's order of
+// vertices. Returns this work-item's sums.
 APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, float time_step, apslk_free_step free,
                                                 bool in_small_steps, __global const uint* vertex_order,
                                                 __global float4* moved, __global float4* motion,
                                                 __global const float* positions, __global const float* velocities,
-                                                __global const float* inverse_masses) {
+                                                __global const float* inverse_masses, __global const float* contacts) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     apslk_vertex_sums sums = {0.0f, 0.0f, 0.0f, 0.0f};
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, i = vertex_order[place];
         const float w = inverse_masses[(ulong)i * APSLK_INVERSE_MASS_STRIDE];
-        const float4 x = (float4)(end_of_step(positions, velocities, i, w, time_step, free), w);
+        const float4 x = (float4)(end_of_step(positions, velocities, i, w, time_step, free, contacts).position, w);
         moved[place] = x;
         if (in_small_steps) motion[place] = (float4)(load_position(positions, i), w);
         sums.bad += is_bad_vertex(x) ? 1.0f : 0.0f;
@@ -152,13 +158,49 @@ typedef struct {
     float held_tension;   // greatest K w' that no mass is raised for; infinite where masses stay as given
 } apslk_small_step;
 
+// What the vertices of a cloth touch.
+typedef struct {
+    __global const float* contacts;  // Buffers::contacts
+    __global const uint* vertex_order;
+    float time_step;  // s
+} apslk_touched;
+
+// Vertex `place` out of what it touches: its position, Δt times its velocity, and what that adds to the end of the
+// step.
+APSLK_INLINE void keep_in_small_step(float4* x, float4* step, float4* total, apslk_touched touched, uint place,
+                                     apslk_small_step small_step) {
+#if APSLK_KEEPS_CONTACTS
+    const float parts = (float)small_step.small_steps;
+    const float share_left = fmax(parts - (float)(small_step.sub_step + 1), 0.0f) / parts;
+    const uint vertex = touched.vertex_order[place];
+    const apslk_moment now = {touched.time_step, share_left, 1.0f / parts};
+    // What mends positions after the last part has no speed.
+    const bool mends = small_step.sub_step >= small_step.small_steps;
+    const float3 motion = mends ? touched.time_step * vload4(2ul * vertex + 1ul, touched.contacts).xyz : step->xyz;
+    const apslk_moving_vertex at = {x->xyz, motion, motion / parts, false};
+    const apslk_moving_vertex kept = kept_outside(at, touched.contacts, vertex, now);
+    if (!kept.touches) return;
+    total->xyz += kept.position - x->xyz + share_left * (kept.motion - motion);
+    x->xyz = kept.position;
+    if (!mends) step->xyz = kept.motion;
+#else
+    (void)x;
+    (void)step;
+    (void)total;
+    (void)touched;
+    (void)place;
+    (void)small_step;
+#endif
+}
+
 // x_i += Δx_i, and on to the next part. A displacement in the part before changes the velocity by small_steps · Δx /
 // Δt, and so carries on through the parts that are left: what it adds to the end of the step is kept in
-// `total_correction`, which stays exactly zero where nothing is corrected.
+// `total_correction`, which stays exactly zero where nothing is corrected. What is touched pushes in the same way.
 APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_step small_step, apslk_free_part free,
                                    __global const uint* corner_offsets, __global const uint* corners,
                                    __global const apslk_gradients* gradients, __global const float* pressure,
-                                   __global float4* moved, __global float4* motion, __global float4* total_correction) {
+                                   __global float4* moved, __global float4* motion, __global float4* total_correction,
+                                   apslk_touched touched) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     const float parts = (float)small_step.small_steps;
     const float parts_left = fmax((float)(small_step.small_steps - small_step.sub_step), 1.0f);
@@ -203,12 +245,19 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
                 // After the last part only positions are mended.
                 if (small_step.sub_step < small_step.small_steps) step += parts * change;
             }
+            keep_in_small_step(&x, &step, &total, touched, i, small_step);
             if (onward > 0.0f) step = (float4)(after_free_part(free, step.xyz, given), 0.0f);
             motion[i] = (float4)(step.xyz, given);
 #else
                 step += parts * change;
+#if !APSLK_KEEPS_CONTACTS
                 motion[i] = (float4)(step.xyz, given);
+#endif
             }
+#if APSLK_KEEPS_CONTACTS
+            keep_in_small_step(&x, &step, &total, touched, i, small_step);
+            motion[i] = (float4)(step.xyz, given);
+#endif
             (void)free;
 #endif
             total_correction[i] = total;
@@ -217,21 +266,28 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
     }
 }
 
-// ṽ += (x − (x̃ + Δt ṽ)) / Δt, or what the corrections of small steps add up to.
-APSLK_INLINE void correct_velocities(apslk_cloth cloth, bool active, float time_step, bool in_small_steps,
+// ṽ += (x − (x̃ + Δt ṽ)) / Δt, or what the corrections of small steps add up to. Not `limited`: what keeps the end of
+// the step outside of contacts.
+APSLK_INLINE void correct_velocities(apslk_cloth cloth, bool active, bool limited, float time_step, bool in_small_steps,
                                      __global const uint* vertex_order, __global const float4* moved,
                                      __global const float4* total_correction, __global const float* positions,
-                                     __global float* velocities) {
+                                     __global float* velocities, __global const float* contacts) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, i = vertex_order[place];
         const float4 x = moved[place];
         if (!(x.w > 0.0f)) continue;  // a pinned vertex keeps every bit of its velocity
         const float3 before = load_velocity(velocities, i);
+        const float3 end = predicted_position(load_position(positions, i), before, time_step);
         // A vertex nothing moved gets exactly zero.
-        const float3 displacement = in_small_steps
-                                        ? total_correction[place].xyz
-                                        : x.xyz - predicted_position(load_position(positions, i), before, time_step);
+        float3 displacement = in_small_steps ? total_correction[place].xyz : x.xyz - end;
+        if (APSLK_KEEPS_CONTACTS && !limited) {
+            const float3 motion = time_step * before;
+            const apslk_moving_vertex at = {end, motion, motion, false};
+            const apslk_moving_vertex kept = kept_outside(at, contacts, i, end_of_the_step(time_step));
+            if (!kept.touches) continue;
+            displacement = kept.position - end;
+        }
         const float3 after = before + displacement * (1.0f / time_step);
         // No area vouches for a velocity that overflows.
         if (all(isfinite(after)))
@@ -252,20 +308,23 @@ APSLK_INLINE void store_positions(apslk_cloth cloth, bool active, __global const
     }
 }
 
-// Where a whole step ends. `limited`: as moved and motion have it; otherwise as `free` has it. A vertex
+// Where a whole step ends. `limited`: as moved and motion have it; otherwise as `free` and contacts have it. A vertex
 // whose end is not finite stays.
 APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited, float time_step, apslk_free_step free,
                                     __global const uint* vertex_order, __global const float4* moved,
                                     __global const float4* motion, __global float* positions,
-                                    __global float* velocities) {
+                                    __global float* velocities, __global const float* contacts) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, i = vertex_order[place];
         const float4 end = moved[place], step = motion[place];
         const float3 before = load_velocity(velocities, i);
         const bool moves = limited && step.w > 0.0f;
-        const float3 after = moves ? step.xyz * (1.0f / time_step) : after_free_step(free, before, step.w);
-        const float3 x = moves ? end.xyz : end_of_step(positions, velocities, i, step.w, time_step, free);
+        const apslk_moving_vertex unlimited = end_of_step(positions, velocities, i, step.w, time_step, free, contacts);
+        const float3 free_after =
+            unlimited.touches ? unlimited.motion * (1.0f / time_step) : after_free_step(free, before, step.w);
+        const float3 after = moves ? step.xyz * (1.0f / time_step) : free_after;
+        const float3 x = moves ? end.xyz : unlimited.position;
         if (!all(isfinite(after)) || !all(isfinite(x))) continue;
         store_vector(x, positions + (ulong)i * APSLK_POSITION_STRIDE, APSLK_POSITION_COMPONENT_STRIDE);
         // A pinned vertex keeps every bit of its velocity.
@@ -275,19 +334,21 @@ APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited
 }
 
 // What a call leaves the caller. `corrected` is the velocities, or the positions where there are none.
-APSLK_INLINE void store_corrections(apslk_cloth cloth, bool active, float time_step, bool in_small_steps,
+APSLK_INLINE void store_corrections(apslk_cloth cloth, bool active, bool limited, float time_step, bool in_small_steps,
                                     __global const uint* vertex_order, __global const float4* moved,
                                     __global const float4* total_correction, __global const float* positions,
-                                    __global float* corrected) {
+                                    __global float* corrected, __global const float* contacts) {
 #if APSLK_POSITIONS_ONLY
+    (void)limited;
     (void)time_step;
     (void)in_small_steps;
     (void)total_correction;
     (void)positions;
+    (void)contacts;
     store_positions(cloth, active, vertex_order, moved, corrected);
 #else
-    correct_velocities(cloth, active, time_step, in_small_steps, vertex_order, moved, total_correction, positions,
-                       corrected);
+    correct_velocities(cloth, active, limited, time_step, in_small_steps, vertex_order, moved, total_correction,
+                       positions, corrected, contacts);
 #endif
 }
 

@@ -94,7 +94,7 @@ inline constexpr std::tuple parameter_fields{
     Field{"stepping", &Parameters::stepping, Bounds{}, "",
           "Which positions each sub-step linearises about. whole_step: the end of the step. small_steps: all but the "
           "last move on by an equal part of the step and correct there. automatic: small steps from 20 sub-steps up, "
-          "with a stretch ceiling or integrates from 2."},
+          "from 2 with a stretch ceiling, integrates or keeps_contacts."},
     Field{"enabled", &Parameters::enabled, Bounds{}, "", "false: the cloth is left alone.", false},
 };
 
@@ -128,6 +128,11 @@ inline constexpr std::tuple option_fields{
           "A call is a whole time step: positions and velocities in and out, acceleration and damping in every small "
           "step. It requires velocities, many_groups, sub_steps ≥ 2 and small steps.",
           false},
+    Field{
+        "keeps_contacts", &Options::keeps_contacts, Bounds{}, "",
+        "Vertices stay outside of what they touch: a plane for each is given with every call. It requires velocities, "
+        "many_groups, sub_steps ≥ 2 and small steps.",
+        false},
 };
 
 /// Of the caller's buffers.

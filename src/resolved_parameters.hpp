@@ -36,9 +36,10 @@ struct ResolvedParameters : Parameters {
     ResolvedParameters(const Parameters& given, const Options& options = {}) : Parameters(given) {
         // Below 20 sub-steps the parts are long, so that solves must be tighter than usual: automatic leaves the step
         // whole. Positions alone have no velocities to move on by.
-        const bool small = stepping == Stepping::small_steps ||
-                           (stepping == Stepping::automatic &&
-                            (options.limits_stretch || options.integrates || sub_steps >= least_automatic_small_steps));
+        const bool small =
+            stepping == Stepping::small_steps ||
+            (stepping == Stepping::automatic && (options.limits_stretch || options.integrates ||
+                                                 options.keeps_contacts || sub_steps >= least_automatic_small_steps));
         if (enabled && small && !options.positions_only && sub_steps >= 2) small_steps = sub_steps - 1;
         raises_masses = small_steps > 0 && (options.limits_stretch || sub_steps >= least_automatic_small_steps);
         solve_tolerance = small_steps > 0 ? std::min(3.0f * tolerance, 0.9f) : tolerance;

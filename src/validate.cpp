@@ -64,6 +64,12 @@ void check(const Struct& given, const Field<Struct, Value>& field) {
     }
 }
 
+// The first option that small steps alone can give; null where there is none.
+const char* needs_small_steps(const Options& options) {
+    if (options.integrates) return "integrates";
+    return options.keeps_contacts ? "keeps_contacts" : nullptr;
+}
+
 }  // namespace
 
 void validate(const Parameters& parameters) {
@@ -87,10 +93,11 @@ void validate(const Options& options) {
         if (resolved_solver(options) != Solver::conjugate_gradient)
             invalid("execution is one_group, which needs solver conjugate_gradient");
     }
-    if (options.integrates && options.execution == Execution::one_group)
-        invalid("integrates is on, which needs execution many_groups");
-    if (options.integrates && options.positions_only)
-        invalid("integrates is on, which needs velocities: positions_only is on");
+    if (const char* on = needs_small_steps(options)) {
+        const std::string which = std::string(on) + " is on, which needs ";
+        if (options.execution == Execution::one_group) invalid(which + "execution many_groups");
+        if (options.positions_only) invalid(which + "velocities: positions_only is on");
+    }
     if (options.stretch_ceiling_per_triangle && !options.limits_stretch)
         invalid("stretch_ceiling_per_triangle is on, which needs limits_stretch");
     if (options.limits_stretch) {
@@ -127,14 +134,14 @@ void validate(const Options& options, const Parameters& parameters) {
         needs(parameters.sub_steps >= 2, "sub_steps >= 2");
         needs(parameters.first_regularization == 0.0f, "first_regularization 0");
     }
-    if (options.integrates) {
+    if (const char* on = needs_small_steps(options)) {
         if (parameters.sub_steps < 2)
-            invalid("sub_steps is " + std::to_string(parameters.sub_steps) + ", expected at least 2: integrates is on");
+            invalid("sub_steps is " + std::to_string(parameters.sub_steps) + ", expected at least 2: " + on + " is on");
         if (parameters.stepping == Stepping::whole_step)
-            invalid("stepping is whole_step, which does not go with integrates");
-    } else if (parameters.acceleration != std::array<float, 3>{} || parameters.damping != 0.0f) {
-        invalid("acceleration or damping is given, but integrates is off");
+            invalid(std::string("stepping is whole_step, which does not go with ") + on);
     }
+    if (!options.integrates && (parameters.acceleration != std::array<float, 3>{} || parameters.damping != 0.0f))
+        invalid("acceleration or damping is given, but integrates is off");
     if (parameters.stretch_ceiling > 0.0f && !options.limits_stretch)
         invalid("stretch_ceiling is " + number(parameters.stretch_ceiling) + ", expected 0: limits_stretch is off");
     if (resolved_solver(options) == Solver::chebyshev && parameters.adaptive_threshold > 0)

@@ -74,7 +74,8 @@ Address DeviceLimiter::enqueue(Address queue, const std::map<std::string, Place>
                           .rest_areas = view("rest_areas"),
                           .regularization = view("regularization"),
                           .rest_shapes = view("rest_shapes"),
-                          .stretch_ceilings = view("stretch_ceiling")};
+                          .stretch_ceilings = view("stretch_ceiling"),
+                          .contacts = view("contacts")};
     const py::gil_scoped_release others_may_run;
     const std::lock_guard one_call_at_a_time(mutex_);
     return reinterpret_cast<Address>(

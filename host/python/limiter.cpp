@@ -3,6 +3,7 @@
 
 #include "arrays.hpp"
 #include "devices.hpp"
+#include "kernels/constants.h"
 #include "opencl_error.hpp"
 #include "process.hpp"
 
@@ -51,6 +52,7 @@ Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle devic
     if (options.regularization_per_triangle) regularization_ = make_buffer(triangle_count_);
     if (options.limits_stretch) rest_shapes_ = make_buffer(4 * triangle_count_);
     if (options.stretch_ceiling_per_triangle) stretch_ceilings_ = make_buffer(triangle_count_);
+    if (options.keeps_contacts) contacts_ = make_buffer(APSLK_CONTACT_SIZE * vertex_count_);
 }
 
 host::BufferHandle Limiter::make_buffer(std::size_t floats) {
@@ -77,20 +79,22 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
     const Array<float> given_areas = numbers<float>(rest_areas, "rest_areas", triangle_count_);
     py::dict settings(arguments.attr("copy")());
     // One of the arrays that a call takes beside parameters, where the limiter was made for it.
-    const auto taken = [&](const host::BufferHandle& buffer, const char* name, const char* option,
-                           std::size_t floats_a_triangle) {
+    const auto taken = [&](const host::BufferHandle& buffer, const char* name, const char* option, std::size_t rows,
+                           std::size_t floats_a_row) {
         std::optional<Array<float>> given;
         if (!buffer) return given;
         if (!settings.contains(name))
             refuse(name, "nothing", std::string("an array of real numbers (limiter made with ") + option + ")");
         const py::object value = settings.attr("pop")(name);
-        given = floats_a_triangle > 1 ? table<float>(value, name, triangle_count_, floats_a_triangle)
-                                      : numbers<float>(value, name, triangle_count_);
+        given = floats_a_row > 1 ? table<float>(value, name, rows, floats_a_row) : numbers<float>(value, name, rows);
         return given;
     };
-    const auto given_regularization = taken(regularization_, "regularization", "regularization_per_triangle", 1);
-    const auto given_shapes = taken(rest_shapes_, "rest_shapes", "limits_stretch", 4);
-    const auto given_ceilings = taken(stretch_ceilings_, "stretch_ceiling", "stretch_ceiling_per_triangle", 1);
+    const auto given_regularization =
+        taken(regularization_, "regularization", "regularization_per_triangle", triangle_count_, 1);
+    const auto given_shapes = taken(rest_shapes_, "rest_shapes", "limits_stretch", triangle_count_, 4);
+    const auto given_ceilings =
+        taken(stretch_ceilings_, "stretch_ceiling", "stretch_ceiling_per_triangle", triangle_count_, 1);
+    const auto given_contacts = taken(contacts_, "contacts", "keeps_contacts", vertex_count_, APSLK_CONTACT_SIZE);
     for_each_field(parameter_fields, [&](const auto& field) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>) {
             const auto& list = field.member == &Parameters::stretch_ceiling ? given_ceilings : given_regularization;
@@ -114,13 +118,15 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
         if (given_regularization) upload(regularization_, given_regularization->data(), triangle_count_);
         if (given_shapes) upload(rest_shapes_, given_shapes->data(), 4 * triangle_count_);
         if (given_ceilings) upload(stretch_ceilings_, given_ceilings->data(), triangle_count_);
+        if (given_contacts) upload(contacts_, given_contacts->data(), APSLK_CONTACT_SIZE * vertex_count_);
         const Buffers buffers{.positions = {positions_.get()},
                               .velocities = {velocities_.get()},
                               .inverse_masses = {inverse_masses_.get()},
                               .rest_areas = {rest_areas_.get()},
                               .regularization = {regularization_.get()},
                               .rest_shapes = {rest_shapes_.get()},
-                              .stretch_ceilings = {stretch_ceilings_.get()}};
+                              .stretch_ceilings = {stretch_ceilings_.get()},
+                              .contacts = {contacts_.get()}};
         const host::EventHandle filtered(limiter_->enqueue(queue_.get(), buffers, parameters));
         const host::EventHandle read(limiter_->read_stats(queue_.get(), {&stats, 1}));
         const cl_event read_event = read.get();

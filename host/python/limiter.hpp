@@ -44,6 +44,7 @@ private:
     host::BufferHandle regularization_;    // where Options::regularization_per_triangle
     host::BufferHandle rest_shapes_;       // where Options::limits_stretch
     host::BufferHandle stretch_ceilings_;  // where Options::stretch_ceiling_per_triangle
+    host::BufferHandle contacts_;          // where Options::keeps_contacts
 };
 
 }  // namespace apsl::python

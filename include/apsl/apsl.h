@@ -112,7 +112,8 @@ typedef struct apsl_options {
     int32_t limits_stretch;               /**< not 0: principal stretches are limited too; rest shapes are given */
     int32_t stretch_ceiling_per_triangle; /**< not 0: a stretch_ceilings buffer is given with every call */
     int32_t integrates;                   /**< not 0: a call is a whole time step, positions in and out */
-    uint32_t reserved[8];                 /**< zeros; room for fields to come, so that the size stays */
+    int32_t keeps_contacts;               /**< not 0: a contacts buffer is given with every call */
+    uint32_t reserved[7];                 /**< zeros; room for fields to come, so that the size stays */
 } apsl_options;
 
 /** apsl::Parameters: what may change from call to call. Begin with apsl_default_parameters(). */
@@ -151,6 +152,9 @@ typedef struct apsl_buffers {
     apsl_buffer_view rest_shapes;    /**< 1/m, 4 floats a triangle, [T]: inverse of the 2x2 matrix of rest edges, row by
                                         row; zeros: no ceiling there. Only with limits_stretch, else a null buffer */
     apsl_buffer_view stretch_ceilings; /**< >= 1.01, [T], 0: none; only with stretch_ceiling_per_triangle */
+    apsl_buffer_view contacts;         /**< 8 floats a vertex, [V]: outward unit normal n (zeros: none), offset d, m
+                                          (kept at n.x >= d), velocity of the body there, m/s, friction coefficient;
+                                          only with keeps_contacts */
 } apsl_buffers;
 
 /** apsl::Stats: what a call did to one cloth. */

@@ -87,6 +87,10 @@ struct Options {
     /// act in every small step (docs/formulation.md, A whole step). Needs velocities, execution other than one_group,
     /// and in every call sub_steps ≥ 2 and a stepping other than whole_step.
     bool integrates = false;
+    /// Vertices stay outside of what they touch (docs/formulation.md, Contact): Buffers::contacts is given with every
+    /// call. Needs velocities, execution other than one_group, and in every call sub_steps ≥ 2 and a stepping other
+    /// than whole_step.
+    bool keeps_contacts = false;
 
     bool operator==(const Options&) const = default;  ///< field by field
 };

@@ -12,7 +12,8 @@ namespace apsl {
 
 /// Which positions each sub-step linearises about.
 enum class Stepping : std::int32_t {
-    /// small_steps from 20 sub-steps up, with Options::limits_stretch or Options::integrates from 2; whole_step below
+    /// small_steps from 20 sub-steps up, from 2 with Options::limits_stretch, integrates or keeps_contacts; whole_step
+    /// below
     automatic = 0,
     whole_step = 1,  ///< Algorithm 1 as printed: every sub-step starts from x̃ + Δt ṽ and what was corrected so far
     /// All sub-steps but the last move on by an equal part of Δt, with velocities that hold the corrections so far, and

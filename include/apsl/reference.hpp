@@ -24,6 +24,7 @@ struct Buffers {
     std::span<const Real> regularization;    ///< α ≥ 1, [T], or empty: Parameters::regularization for all
     std::span<const Real> rest_shapes = {};  ///< 1/m, [4T], with Options::limits_stretch; as apsl::Buffers has them
     std::span<const Real> stretch_ceilings = {};  ///< [T], 0 or ≥ 1.01, or empty: Parameters::stretch_ceiling for all
+    std::span<const Real> contacts = {};          ///< [8V], with Options::keeps_contacts; as apsl::Buffers has them
     /// m, [3V], out: the end of the step, with Options::integrates. May be the memory of `positions`.
     std::span<Real> end_positions = {};
 };
@@ -34,9 +35,9 @@ struct Buffers {
 template <class Real>
 class BasicStrainLimiter {
 public:
-    /// Of the options `matrix`, `solver`, `warm_start_sub_steps`, `bound_interval`, `limits_stretch` and `integrates`
-    /// count here; the others say how a device is used. α is one for each triangle where the buffers have one. Throws
-    /// Error(invalid_argument) as validate() does.
+    /// Of the options `matrix`, `solver`, `warm_start_sub_steps`, `bound_interval`, `limits_stretch`, `integrates`
+    /// and `keeps_contacts` count here; the others say how a device is used. α is one for each triangle where the
+    /// buffers have one. Throws Error(invalid_argument) as validate() does.
     explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, const Options& options = {});
     ~BasicStrainLimiter();
     BasicStrainLimiter(BasicStrainLimiter&&) noexcept;  ///< what was moved from may only be assigned to or destroyed

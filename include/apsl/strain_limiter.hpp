@@ -47,6 +47,11 @@ struct Buffers {
     /// ≥ 1.01, [T], less counts as 1.01; 0: no ceiling for this triangle. Only with
     /// Options::stretch_ceiling_per_triangle.
     BufferView stretch_ceilings = {};
+    /// 8 floats a vertex, [V]: the plane that it may touch in this step. The outward unit normal n of a body's surface;
+    /// offset d, m: at the end of the step the vertex lies at n·x ≥ d; the velocity u of the body there, m/s, 3 floats:
+    /// a time t before the end the plane lies at d − t n·u; Coulomb's coefficient of friction, ≥ 0. A normal of zeros:
+    /// nothing to touch. Only with Options::keeps_contacts.
+    BufferView contacts = {};
 };
 
 APSL_STRUCTS_END

@@ -8,6 +8,7 @@
 #include "reference/chebyshev.hpp"
 #include "reference/check.hpp"
 #include "reference/conjugate_gradient.hpp"
+#include "reference/contact.hpp"
 #include "reference/displacements.hpp"
 #include "reference/effective_masses.hpp"
 #include "reference/free_motion.hpp"
@@ -52,6 +53,9 @@ void check(const Topology& topology, const Buffers<Real>& buffers, const Options
     check_values("rest_shapes", "number", buffers.rest_shapes, "a finite number (1/m)", [](Real) { return true; });
     check_values("stretch_ceilings", "triangle", buffers.stretch_ceilings, "0 or a finite number >= 1.01",
                  [](Real ceiling) { return ceiling == Real(0) || ceiling >= Real(APSLK_LEAST_STRETCH_CEILING); });
+    check_size("contacts", buffers.contacts.size(),
+               options.keeps_contacts ? APSLK_CONTACT_SIZE * topology.vertex_count() : 0);
+    check_values("contacts", "number", buffers.contacts, "a finite number", [](Real) { return true; });
 }
 
 template <class Real>
@@ -82,7 +86,8 @@ struct BasicStrainLimiter<Real>::Implementation {
     std::vector<std::uint8_t> shared;  // CsrPattern::shared; its offsets and columns live on in G
     SparseMatrix<Real> G;
 
-    std::vector<Real> predicted;         // x̃ + Δt ṽ
+    std::vector<Real> predicted;         // x̃ + Δt ṽ, outside of what is touched
+    std::vector<Real> unlimited;         // m/s, velocities where nothing is limited
     std::vector<Real> moved;             // x_j, corrected sub-step by sub-step
     std::vector<Real> motion;            // Δt times the velocity, in small steps with the corrections so far
     std::vector<Real> total_correction;  // what the corrections so far add to the end of the step
@@ -107,11 +112,27 @@ struct BasicStrainLimiter<Real>::Implementation {
         const auto time_step = static_cast<Real>(parameters.time_step);
         const FreeStep<Real> free(parameters);
         predicted.resize(buffers.positions.size());
-        for (std::size_t n = 0; n < predicted.size(); ++n)
+        unlimited.resize(buffers.positions.size());
+        for (std::size_t n = 0; n < predicted.size(); ++n) {
             predicted[n] =
                 buffers.positions[n] + time_step * free.mean(buffers.velocities[n], n, buffers.inverse_masses);
+            unlimited[n] = free.end(buffers.velocities[n], n, buffers.inverse_masses);
+        }
+        if (options.keeps_contacts)
+            for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i)
+                if (buffers.inverse_masses[i] > Real(0)) keep_end(i, buffers, time_step);
         moved = predicted;
         total_correction.assign(predicted.size(), Real(0));
+    }
+
+    /// The free end of vertex i's step, outside of what it touches. Of a filter the end is where the velocity leads.
+    void keep_end(std::size_t i, const Buffers<Real>& buffers, Real time_step) {
+        Eigen::Map<Vector3<Real>> x(predicted.data() + 3 * i), velocity(unlimited.data() + 3 * i);
+        MovingVertex<Real> end{x, time_step * velocity, x - position(buffers.positions, i)};
+        if (!end.keep(Contact<Real>(buffers.contacts, i), time_step, Real(0), Real(1))) return;
+        velocity = options.integrates ? Vector3<Real>(end.motion / time_step)
+                                      : Vector3<Real>(velocity + (end.position - x) / time_step);
+        x = end.position;
     }
 
     /// Geometry at x_j. A triangle without a rest area gets no gradients: nothing moves for it.
@@ -266,9 +287,32 @@ struct BasicStrainLimiter<Real>::Implementation {
             correction[n] *= masses.share_taken(n / 3, inverse_masses[n / 3]);
     }
 
+    /// x_j out of what it touches, and its motion. What that adds to the end of the step carries on through the parts
+    /// left.
+    void keep_contacts(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
+        const auto time_step = static_cast<Real>(parameters.time_step),
+                   parts = static_cast<Real>(parameters.small_steps);
+        const Real parts_left = std::max(parts - static_cast<Real>(stats.sub_steps + 1), Real(0));
+        const bool mends = stats.sub_steps >= parameters.small_steps;
+        for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i) {
+            if (!(buffers.inverse_masses[i] > Real(0))) continue;
+            const Contact<Real> contact(buffers.contacts, i);
+            Eigen::Map<Vector3<Real>> x(moved.data() + 3 * i), step(motion.data() + 3 * i),
+                total(total_correction.data() + 3 * i);
+            // What mends positions has no speed.
+            const Vector3<Real> now = mends ? Vector3<Real>(time_step * contact.velocity) : Vector3<Real>(step);
+            MovingVertex<Real> vertex{x, now, now / parts};
+            if (!vertex.keep(contact, time_step, time_step * parts_left / parts, Real(1) / parts)) continue;
+            total += vertex.position - x + (vertex.motion - now) * (parts_left / parts);
+            x = vertex.position;
+            if (!mends) step = vertex.motion;
+        }
+    }
+
     /// Corrects x_j. In small steps of `parts` parts a displacement of sub-step k changes the velocity too, by parts ·
     /// Δx / Δt, and carries on through the parts left.
-    void displace(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
+    void displace(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
+        const std::span<const Real> inverse_masses = buffers.inverse_masses;
         const int sub_step = stats.sub_steps, parts = parameters.small_steps;
         if (options.limits_stretch)
             stretches.displacements(parameters.raises_masses, correction);
@@ -279,13 +323,14 @@ struct BasicStrainLimiter<Real>::Implementation {
             moved[n] += correction[n];
             total_correction[n] += carried * correction[n];
         }
-        // After the last part only positions are mended.
-        if (sub_step >= parts) return;
         const auto time_step = static_cast<Real>(parameters.time_step), count = static_cast<Real>(parts);
+        // After the last part only positions are mended.
+        if (sub_step < parts)
+            for (std::size_t n = 0; n < moved.size(); ++n) motion[n] += count * correction[n];
+        if (options.keeps_contacts) keep_contacts(buffers, parameters);
+        if (sub_step + 1 >= parts) return;
         const FreePart<Real> free(parameters);
         for (std::size_t n = 0; n < moved.size(); ++n) {
-            motion[n] += count * correction[n];
-            if (sub_step + 1 == parts) continue;
             if (options.integrates) motion[n] = time_step * free(motion[n] / time_step, n, inverse_masses);
             moved[n] += motion[n] / count;
         }
@@ -295,12 +340,11 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// nothing written, where a number is not finite. What pins a vertex moves it, and its velocity keeps every bit.
     bool write_step(const Buffers<Real>& buffers, const ResolvedParameters& parameters, bool limited) {
         const auto time_step = static_cast<Real>(parameters.time_step);
-        const FreeStep<Real> free(parameters);
         correction.resize(moved.size());
         std::vector<Real>& velocities = correction;
         for (std::size_t n = 0; n < velocities.size(); ++n) {
             const bool moves = limited && buffers.inverse_masses[n / 3] > Real(0);
-            velocities[n] = moves ? motion[n] / time_step : free.end(buffers.velocities[n], n, buffers.inverse_masses);
+            velocities[n] = moves ? motion[n] / time_step : unlimited[n];
             if (!moves) moved[n] = predicted[n];
         }
         if (!all_finite<Real>(moved) || !all_finite<Real>(velocities)) return false;
@@ -421,7 +465,7 @@ struct BasicStrainLimiter<Real>::Implementation {
 
             const SolveResult<Real> result = solve(buffers, parameters);
             if (!is_finite(result.relative_residual)) return;
-            displace(buffers.inverse_masses, parameters);
+            displace(buffers, parameters);
             prepare_next(buffers, parameters);
             ++stats.sub_steps;
             stats.iterations += result.iterations + (kept.empty() ? 0 : 1);  // the product with a guess costs as much
@@ -444,6 +488,8 @@ struct BasicStrainLimiter<Real>::Implementation {
             if (!write_step(buffers, parameters, limited)) stats.status = Status::diverged;
         } else if (limited) {
             std::copy(correction.begin(), correction.end(), buffers.velocities.begin());
+        } else if (options.keeps_contacts) {
+            std::copy(unlimited.begin(), unlimited.end(), buffers.velocities.begin());
         }
     }
 };
@@ -478,9 +524,9 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
     const auto entries = static_cast<std::size_t>(i.G.nonZeros());
     const auto rows = static_cast<std::size_t>(i.G.rows());
     return entries * (sizeof(Real) + sizeof(int)) + (rows + 1) * sizeof(int) + bytes(i.shared) + bytes(i.predicted) +
-           bytes(i.moved) + bytes(i.motion) + bytes(i.total_correction) + bytes(i.correction) + bytes(i.geometry) +
-           bytes(i.area_excess) + bytes(i.start_error) + bytes(i.masses.inverse) + bytes(i.masses.tension) +
-           bytes(i.masses.stiffness) + bytes(i.lambda) + bytes(i.effective_regularization) +
+           bytes(i.unlimited) + bytes(i.moved) + bytes(i.motion) + bytes(i.total_correction) + bytes(i.correction) +
+           bytes(i.geometry) + bytes(i.area_excess) + bytes(i.start_error) + bytes(i.masses.inverse) +
+           bytes(i.masses.tension) + bytes(i.masses.stiffness) + bytes(i.lambda) + bytes(i.effective_regularization) +
            i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) + bytes(i.scratch.inverse_diagonal) +
            bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) +
            bytes(i.scratch.product) + bytes(i.direction_bounds) + bytes(i.bound) +

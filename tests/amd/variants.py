@@ -23,24 +23,37 @@ AXES = [
      for alpha, chebyshev, stretch in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 1, 1)]],
     [{"APSLK_STRETCH_CEILING_PER_TRIANGLE": 0}, {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}],
     [{"APSLK_INTEGRATES": 0}, {"APSLK_INTEGRATES": 1}],
+    [{"APSLK_KEEPS_CONTACTS": 0}, {"APSLK_KEEPS_CONTACTS": 1}],
     [{"APSLK_WARM_START_SUB_STEPS": 0}, {"APSLK_WARM_START_SUB_STEPS": 8}],
     # What the patches of 512 triangles of most meshes have; host/ passes the number of the meshes at hand.
     [{"APSLK_PATCH_VERTICES": 400}],
 ]
 
+# What contacts add reads no layout of the caller's arrays: one is enough.
+_CONTACTS_APART = ({"APSLK_KEEPS_CONTACTS": 1, "APSLK_POSITION_STRIDE": 1},
+                   {"APSLK_KEEPS_CONTACTS": 1, "APSLK_POSITION_STRIDE": 4})
+
 # Combinations that host/ never builds for a GPU (host/limiter_options.cpp), or that make no other code.
 NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"APSLK_REGULARIZATION_PER_TRIANGLE": 1},
                                            {"APSLK_CHEBYSHEV": 1}, {"APSLK_LIMITS_STRETCH": 1},
-                                           {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}, {"APSLK_INTEGRATES": 1}),
-                "store_step.cl": ({"APSLK_INTEGRATES": 0}, {"APSLK_POSITIONS_ONLY": 1}, {"APSLK_LIMITS_STRETCH": 1}),
+                                           {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}, {"APSLK_INTEGRATES": 1},
+                                           {"APSLK_KEEPS_CONTACTS": 1}),
+                "store_step.cl": ({"APSLK_INTEGRATES": 0}, {"APSLK_POSITIONS_ONLY": 1}, {"APSLK_LIMITS_STRETCH": 1},
+                                  *_CONTACTS_APART),
                 **{file: ({"APSLK_LIMITS_STRETCH": 1},) for file in ("matrix_free_consistent.cl", "finish_solve.cl")},
-                **{file: ({"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1})
-                   for file in ("predict_positions.cl", "start_small_steps.cl")},
-                "update_velocities.cl": ({"APSLK_LIMITS_STRETCH": 1}, {"APSLK_INTEGRATES": 1}),
-                "gather_displacements.cl": ({"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
+                "predict_positions.cl": ({"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
+                                         *_CONTACTS_APART),
+                "start_small_steps.cl": ({"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
+                                         {"APSLK_KEEPS_CONTACTS": 1}),
+                "update_velocities.cl": ({"APSLK_LIMITS_STRETCH": 1}, {"APSLK_INTEGRATES": 1}, *_CONTACTS_APART),
+                "gather_displacements.cl": (*_CONTACTS_APART,
+                                            {"APSLK_KEEPS_CONTACTS": 1, "APSLK_WARM_START_SUB_STEPS": 8},
+                                            {"APSLK_KEEPS_CONTACTS": 1, "APSLK_REGULARIZATION_PER_TRIANGLE": 1},
+                                            {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
                                             {"APSLK_WARM_START_SUB_STEPS": 8, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 1, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 4, "APSLK_CHEBYSHEV": 1}),
+                **{file: ({"APSLK_KEEPS_CONTACTS": 1},) for file in ("rest_areas.cl", "solve_control.cl")},
                 "order_triangle_values.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0}, {"APSLK_POSITIONS_ONLY": 1},
                                              {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1, "APSLK_LIMITS_STRETCH": 0}),
                 "measure_area_change.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0},

@@ -21,7 +21,8 @@ apsl_buffers c_views(const CallerBuffers& buffers) {
             {v.rest_areas.buffer, v.rest_areas.offset},
             {v.regularization.buffer, v.regularization.offset},
             {v.rest_shapes.buffer, v.rest_shapes.offset},
-            {v.stretch_ceilings.buffer, v.stretch_ceilings.offset}};
+            {v.stretch_ceilings.buffer, v.stretch_ceilings.offset},
+            {v.contacts.buffer, v.contacts.offset}};
 }
 
 struct CTopology {
@@ -260,6 +261,7 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.limits_stretch == 0);
     CHECK(o.stretch_ceiling_per_triangle == 0);
     CHECK(o.integrates == 0);
+    CHECK(o.keeps_contacts == 0);
     const apsl_parameters p = apsl_default_parameters();
     const Parameters parameters;
     CHECK(p.time_step == parameters.time_step);
@@ -285,6 +287,7 @@ TEST_CASE("a whole step by the C interface leaves the bytes of the C++ one", "[e
     const CTopology topology(cloth);
     apsl_options c_options = apsl_default_options();
     c_options.integrates = 1;
+    c_options.keeps_contacts = 1;
     c_options.limits_stretch = 1;
     apsl_parameters c_parameters = apsl_default_parameters();
     c_parameters.sub_steps = 4;
@@ -292,7 +295,7 @@ TEST_CASE("a whole step by the C interface leaves the bytes of the C++ one", "[e
     c_parameters.stretch_ceiling = 1.05f;
     c_parameters.acceleration[1] = -9.81f;
     c_parameters.damping = 0.5f;
-    const Options options{.limits_stretch = true, .integrates = true};
+    const Options options{.limits_stretch = true, .integrates = true, .keeps_contacts = true};
     const Parameters parameters{.sub_steps = 4,
                                 .most_sub_steps = 6,
                                 .stretch_ceiling = 1.05f,

@@ -208,10 +208,10 @@ void check_refused(StrainLimiter& made, apsl_limiter* in_c, const std::string& w
     check_invalid(what, [&] { clReleaseEvent(made.read_stats(queue, stats, wait_list)); });
 
     const auto c_view = [](const BufferView& view) { return apsl_buffer_view{view.buffer, view.offset}; };
-    const apsl_buffers c_views{c_view(views.positions),       c_view(views.velocities),
-                               c_view(views.inverse_masses),  c_view(views.rest_areas),
-                               c_view(views.regularization),  c_view(views.rest_shapes),
-                               c_view(views.stretch_ceilings)};
+    const apsl_buffers c_views{c_view(views.positions),        c_view(views.velocities),
+                               c_view(views.inverse_masses),   c_view(views.rest_areas),
+                               c_view(views.regularization),   c_view(views.rest_shapes),
+                               c_view(views.stretch_ceilings), c_view(views.contacts)};
     const apsl_parameters parameters = apsl_default_parameters();
     apsl_stats c_stats{};
     cl_event event = nullptr;

@@ -58,11 +58,13 @@ Filtered filter_with_reference(const MovingCloth& cloth, const Options& options,
     std::vector<double> velocities = cloth.velocities;
     std::span<const double> alpha;
     if (options.regularization_per_triangle) alpha = cloth.regularization;
-    std::span<const double> shapes, ceilings;
+    std::span<const double> shapes, ceilings, contacts;
     if (options.limits_stretch) shapes = cloth.rest_shapes;
     if (options.stretch_ceiling_per_triangle) ceilings = cloth.stretch_ceilings;
-    limiter.enqueue({cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, alpha, shapes, ceilings},
-                    parameters);
+    if (options.keeps_contacts) contacts = cloth.contacts;
+    limiter.enqueue(
+        {cloth.positions, velocities, cloth.inverse_masses, cloth.rest_areas, alpha, shapes, ceilings, contacts},
+        parameters);
     return {velocities, limiter.read_stats()};
 }
 
@@ -96,7 +98,7 @@ void check_against_reference(const Filtered& got, const MovingCloth& cloth, cons
                              const Parameters& parameters) {
     const Filtered want = filter_with_reference(cloth, options, parameters);
     const auto time_step = static_cast<double>(parameters.time_step);
-    const auto tolerance = static_cast<double>(ResolvedParameters(parameters).solve_tolerance);
+    const auto tolerance = static_cast<double>(ResolvedParameters(parameters, options).solve_tolerance);
 
     std::vector<double> correction(want.velocities.size());
     for (std::size_t n = 0; n < correction.size(); ++n) correction[n] = want.velocities[n] - cloth.velocities[n];
@@ -111,7 +113,7 @@ void check_against_reference(const Filtered& got, const MovingCloth& cloth, cons
     CHECK(got.stats.status == want.stats.status);
     CHECK(got.stats.sub_steps == want.stats.sub_steps);
     CHECK(std::abs(got.stats.iterations - want.stats.iterations) <= want.stats.sub_steps);
-    CHECK((got.stats.status != Status::ok || got.stats.residual <= ResolvedParameters(parameters).solve_tolerance));
+    CHECK((got.stats.status != Status::ok || got.stats.residual <= ResolvedParameters(parameters, options).solve_tolerance));
 
     // What the device says of the areas, against the areas its velocities lead to. Positions round at their own size:
     // relative to a triangle's height that is the relative error of its area.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "filter/filtered.hpp"
+#include "filter/stepped.hpp"
 #include "support/tolerances.hpp"
 
 #include <apsl/error.hpp>
@@ -17,42 +17,6 @@ namespace {
 
 constexpr Options by_areas{.integrates = true};
 constexpr Options with_ceiling{.limits_stretch = true, .integrates = true};
-
-/// Where a step ends.
-struct Ended {
-    std::vector<double> positions, velocities;
-    Stats stats;
-};
-
-Ended step_on_device(StrainLimiter& limiter, const MovingCloth& cloth, const Options& options,
-                     const Parameters& parameters) {
-    const CallerBuffers buffers({&cloth, 1}, options);
-    const Stats stats = filter(limiter, buffers, {&parameters, 1})[0];
-    const std::vector<float> velocities = buffers.read_velocities(), positions = buffers.read_positions();
-    return {{positions.begin(), positions.end()}, {velocities.begin(), velocities.end()}, stats};
-}
-
-Ended step_on_device(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
-    StrainLimiter limiter(device().context, device().id, cloth.topology, options);
-    return step_on_device(limiter, cloth, options, parameters);
-}
-
-Ended step_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
-    reference::StrainLimiter limiter(cloth.topology, options);
-    Ended end{cloth.positions, cloth.velocities, {}};
-    std::span<const double> shapes;
-    if (options.limits_stretch) shapes = cloth.rest_shapes;
-    limiter.enqueue({.positions = cloth.positions,
-                     .velocities = end.velocities,
-                     .inverse_masses = cloth.inverse_masses,
-                     .rest_areas = cloth.rest_areas,
-                     .regularization = {},
-                     .rest_shapes = shapes,
-                     .end_positions = end.positions},
-                    parameters);
-    end.stats = limiter.read_stats();
-    return end;
-}
 
 constexpr Parameters falling(int sub_steps, float stretch_ceiling = 0.0f) {
     return {.regularization = 1.2f,

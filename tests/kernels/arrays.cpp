@@ -184,7 +184,8 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       rest_areas(placed(sources, &Cloth::rest_areas, 1, {1, array_offset})),
       regularization(placed(sources, &Cloth::regularization, 1, {1, array_offset})),
       rest_shapes(placed(sources, &Cloth::rest_shapes, 4, {4, array_offset})),
-      stretch_ceilings(placed(sources, &Cloth::stretch_ceilings, 1, {1, array_offset})) {
+      stretch_ceilings(placed(sources, &Cloth::stretch_ceilings, 1, {1, array_offset})),
+      contacts(placed(sources, &Cloth::contacts, 8, {8, array_offset})) {
     for (std::size_t c = 0; c < cloth_count(); ++c) {
         const std::vector<double>& b = solves[c].right_hand_side;
         write_partial_sum(c, APSLK_PARTIAL_RESIDUAL_EVEN, squared_norm(solves[c], b));

@@ -67,7 +67,7 @@ struct Arrays {
     DeviceArray<float> start_errors;                   ///< of measure_step
     DeviceArray<float> ordered_rest, ordered_scaling;  ///< what order_triangle_values makes
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
-    DeviceArray<float> rest_shapes, stretch_ceilings;  ///< the caller's too
+    DeviceArray<float> rest_shapes, stretch_ceilings, contacts;  ///< the caller's too
 
     std::size_t cloth_count() const { return sources.size(); }
     /// The cloth's numbers out of an array over (padded) triangles, in the caller's order.

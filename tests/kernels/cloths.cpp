@@ -51,6 +51,18 @@ Cloth make_cloth(const Mesh& mesh, std::uint32_t seed) {
     round_to_float(cloth.rest_shapes);
     cloth.stretch_ceilings = random_numbers(cloth.rest_areas.size(), 1.02, 1.2, seed + 5);
     for (std::size_t a = 4; a < cloth.stretch_ceilings.size(); a += 9) cloth.stretch_ceilings[a] = 0.0;
+    const std::vector<double> numbers = random_numbers(8 * mesh.vertex_count(), -1.0, 1.0, seed + 6);
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+        const double* n = numbers.data() + 8 * v;
+        Eigen::Vector3d normal(n[0], n[1], n[2]);
+        normal.normalize();
+        if (v % 5 == 2) normal.setZero();
+        const double offset =
+            normal.dot(Eigen::Map<const Eigen::Vector3d>(cloth.positions.data() + 3 * v)) + 0.1 * n[3];
+        cloth.contacts.insert(cloth.contacts.end(),
+                              {normal.x(), normal.y(), normal.z(), offset, n[4], n[5], n[6], std::abs(n[7])});
+    }
+    round_to_float(cloth.contacts);
     return cloth;
 }
 

@@ -26,6 +26,8 @@ struct Cloth {
     std::vector<double> regularization;    ///< α, [T], from 1 to 3
     std::vector<double> rest_shapes;       ///< 1/m, [4T], of a cloth a tenth narrower
     std::vector<double> stretch_ceilings;  ///< [T], from 1.02 to 1.2, every ninth 0
+    /// [8V], Buffers::contacts: planes up to 0.1 m before and behind `positions`, every fifth vertex without one.
+    std::vector<double> contacts;
 };
 
 Cloth make_cloth(const Mesh& mesh, std::uint32_t seed);

@@ -24,6 +24,7 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
                                 define("APSLK_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
                                 define("APSLK_CHEBYSHEV", build.chebyshev ? 1 : 0) +
                                 define("APSLK_INTEGRATES", build.integrates ? 1 : 0) +
+                                define("APSLK_KEEPS_CONTACTS", build.keeps_contacts ? 1 : 0) +
                                 define("APSLK_LIMITS_STRETCH", build.limits_stretch ? 1 : 0) +
                                 define("APSLK_STRETCH_CEILING_PER_TRIANGLE", build.limits_stretch ? 1 : 0);
     // Never released, see transfer_queue() in support/opencl.cpp.
@@ -53,7 +54,8 @@ Buffers caller(const Arrays& a, const Build& build) {
             .rest_areas = view(a.rest_areas, a.array_offset),
             .regularization = build.alpha_per_triangle ? view(a.regularization, a.array_offset) : BufferView{},
             .rest_shapes = view(a.rest_shapes, a.array_offset),
-            .stretch_ceilings = view(a.stretch_ceilings, a.array_offset)};
+            .stretch_ceilings = view(a.stretch_ceilings, a.array_offset),
+            .contacts = view(a.contacts, a.array_offset)};
 }
 
 void run(const host::Kernel& kernel, std::uint32_t groups, const Build& build, std::size_t cloths) {
@@ -206,7 +208,8 @@ void finish_solve(Arrays& a, const Build& build, int iterations) {
 
 void gather_displacements(Arrays& a, const Build& build, std::uint32_t slot, int sub_step) {
     const host::Kernel& k = kernel(a, build, "gather_displacements.cl", "gather_displacements");
-    run(arguments::gather_displacements(k, a, a.pressure, sub_step, slot), a.groups, build, a.cloth_count());
+    run(arguments::gather_displacements(k, a, caller(a, build), a.pressure, sub_step, slot), a.groups, build,
+        a.cloth_count());
 }
 
 void update_velocities(Arrays& a, const Build& build) {

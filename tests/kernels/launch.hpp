@@ -18,6 +18,7 @@ struct Build {
     bool chebyshev = false;
     bool limits_stretch = false;  ///< with a ceiling of its own for each triangle
     bool integrates = false;
+    bool keeps_contacts = false;
 };
 
 /// 1, 32, 64 and 256 work-items a group, as far as the device goes.

@@ -120,6 +120,22 @@ class WholeStep(unittest.TestCase):
         np.testing.assert_allclose(positions, CORNER, atol=2e-3)
         self.assertLess(stats.max_area_change, 2e-3)
 
+    def test_what_falls_stays_on_the_floor(self):
+        made = limiter(ONE_TRIANGLE, 3, integrates=True, keeps_contacts=True)
+        floor = np.tile([0, 0, 1, -0.01, 0, 0, 0, 1], (3, 1))
+        positions, velocities = CORNER, np.zeros((3, 3))
+        for _ in range(10):
+            positions, velocities, stats = made.step(positions, velocities, [2, 2, 2], [0.5], time_step=TIME_STEP,
+                                                     acceleration=[0, 0, -9.81], contacts=floor)
+        np.testing.assert_allclose(positions, CORNER - [0, 0, 0.01], atol=1e-6)
+        np.testing.assert_allclose(velocities, 0, atol=1e-6)
+        self.assertEqual(stats.status, "ok")
+        for wrong in (floor[:2], floor[:, :7], "x"):
+            with self.assertRaisesRegex(apsl.Error, "contacts"):
+                made.step(CORNER, velocities, [2, 2, 2], [0.5], contacts=wrong)
+        with self.assertRaisesRegex(apsl.Error, "contacts: got nothing"):
+            made.step(CORNER, velocities, [2, 2, 2], [0.5])
+
     def test_each_kind_of_limiter_has_its_call(self):
         arrays = (CORNER, np.zeros((3, 3)), [0, 2, 0], [0.5])
         with self.assertRaisesRegex(apsl.Error, "step: .*expected a call of limit"):

@@ -3,7 +3,9 @@
 
 #include <apsl/reference.hpp>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <stdexcept>
@@ -83,6 +85,19 @@ MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed) {
     for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
         cloth.stretch_ceilings.push_back(a % 9 == 4 ? 0.0 : number(1.02, 1.2));
     round_to_float(cloth.stretch_ceilings);
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
+        std::array<double, 3> normal{number(-1.0, 1.0), number(-1.0, 1.0), number(0.2, 1.0)};
+        const double length =
+            v % 5 == 2 ? std::numeric_limits<double>::infinity() : std::hypot(normal[0], normal[1], normal[2]);
+        double offset = edge * number(-0.3, 0.3);
+        for (std::size_t k = 0; k < 3; ++k) {
+            normal[k] /= length;
+            offset += normal[k] * (cloth.positions[3 * v + k] + cloth.velocities[3 * v + k] / steps_per_second);
+        }
+        cloth.contacts.insert(cloth.contacts.end(), {normal[0], normal[1], normal[2], offset, number(-1.0, 1.0),
+                                                     number(-1.0, 1.0), number(-1.0, 1.0), number(0.0, 1.0)});
+    }
+    round_to_float(cloth.contacts);
     return cloth;
 }
 
@@ -105,7 +120,8 @@ CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options&
       rest_areas(placed(cloths, &MovingCloth::rest_areas, {1, 1}, offset)),
       regularization(placed(cloths, &MovingCloth::regularization, {1, 1}, offset)),
       rest_shapes(placed(cloths, &MovingCloth::rest_shapes, {4, 4}, offset)),
-      stretch_ceilings(placed(cloths, &MovingCloth::stretch_ceilings, {1, 1}, offset)) {
+      stretch_ceilings(placed(cloths, &MovingCloth::stretch_ceilings, {1, 1}, offset)),
+      contacts(placed(cloths, &MovingCloth::contacts, {8, 8}, offset)) {
 }
 
 Buffers CallerBuffers::views() const {
@@ -118,6 +134,7 @@ Buffers CallerBuffers::views() const {
     if (options.regularization_per_triangle) views.regularization = {regularization.get(), bytes};
     if (options.limits_stretch) views.rest_shapes = {rest_shapes.get(), bytes};
     if (options.stretch_ceiling_per_triangle) views.stretch_ceilings = {stretch_ceilings.get(), bytes};
+    if (options.keeps_contacts) views.contacts = {contacts.get(), bytes};
     return views;
 }
 
@@ -141,7 +158,7 @@ std::vector<float> without_gaps(const std::vector<float>& all, const Layout& lay
 
 std::vector<float> CallerBuffers::read_velocities() const {
     for (const auto* array :
-         {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes, &stretch_ceilings})
+         {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes, &stretch_ceilings, &contacts})
         array->read();
     return without_gaps(velocities.read(), layout_of_velocities(options), offset, vertex_count, "velocities");
 }

@@ -24,6 +24,9 @@ struct MovingCloth {
     std::vector<double> regularization;    ///< α, [T]
     std::vector<double> rest_shapes;       ///< 1/m, [4T]
     std::vector<double> stretch_ceilings;  ///< [T], from 1.02 to 1.2, every ninth 0
+    /// [8V], Buffers::contacts: planes that about half of the vertices end a step behind, a third of an edge deep at
+    /// most, every fifth vertex without one.
+    std::vector<double> contacts;
 };
 
 /// The mesh at rest where it lies, wavy now and about to be stretched by some 15 %: unequal masses, two pins.
@@ -40,7 +43,8 @@ struct CallerBuffers {
     Options options;
     std::size_t offset;
     std::size_t vertex_count;
-    DeviceArray<float> positions, velocities, inverse_masses, rest_areas, regularization, rest_shapes, stretch_ceilings;
+    DeviceArray<float> positions, velocities, inverse_masses, rest_areas, regularization, rest_shapes, stretch_ceilings,
+        contacts;
 
     Buffers views() const;
     /// [3V] of all cloths, without stride and offset. Checks the guard bands of every buffer.

@@ -86,8 +86,8 @@ class StrainLimiter:
 
         queue: a pyopencl.CommandQueue of the context and device. Arrays: what limit() takes, 32-bit floats laid out as
         the options say, each a pyopencl.array.Array, a pyopencl.Buffer, or a pair of a buffer and an offset in bytes;
-        to be kept until the event completes. So are `rest_shapes`, and where there is one for each triangle
-        `regularization` and `stretch_ceiling`. velocities: None with positions_only. wait_for: a list of events that
+        to be kept until the event completes. So are `rest_shapes`, `contacts`, and where there is one for
+        each triangle `regularization` and `stretch_ceiling`. velocities: None with positions_only. wait_for: a list of events that
         the call starts after, besides those of the Arrays. In place of any OpenCL object its handle as an integer.
         Returns a pyopencl.Event, or where pyopencl is not imported the handle of an event, which the caller releases.
         Raises Error for what does not fit, before anything is queued.
@@ -146,7 +146,7 @@ class StrainLimiter:
 
 
 _optional_arrays = {"regularization": "regularization_per_triangle", "rest_shapes": "limits_stretch",
-                    "stretch_ceiling": "stretch_ceiling_per_triangle"}
+                    "stretch_ceiling": "stretch_ceiling_per_triangle", "contacts": "keeps_contacts"}
 
 
 def _layouts(vertices: int, triangles: int,
@@ -158,4 +158,4 @@ def _layouts(vertices: int, triangles: int,
     numbers = (triangles,), (4,)
     return {"positions": vectors("position"), "velocities": vectors("velocity"),
             "inverse_masses": ((vertices,), (4 * options["inverse_mass_stride"],)), "rest_areas": numbers,
-            "regularization": numbers, "rest_shapes": ((triangles, 4), (16, 4)), "stretch_ceiling": numbers}
+            "regularization": numbers, "rest_shapes": ((triangles, 4), (16, 4)), "stretch_ceiling": numbers, "contacts": ((vertices, 8), (32, 4))}

@@ -27,6 +27,7 @@ class Options(TypedDict, total=False):
     limits_stretch: bool  # `rest_shapes` are then given in every call, and `stretch_ceiling` counts
     stretch_ceiling_per_triangle: bool  # `stretch_ceiling` is then an array [T] in every call
     integrates: bool  # a call is a whole time step: it returns positions too
+    keeps_contacts: bool  # `contacts` are then given in every call
 
 
 class DeviceOptions(Options, total=False):
@@ -57,6 +58,9 @@ class Parameters(TypedDict, total=False):
     # stretch_ceiling_per_triangle
     stretch_ceiling: Union[float, npt.ArrayLike, DeviceArray]
     rest_shapes: Union[npt.ArrayLike, DeviceArray]  # 1/m, [T, 4], with limits_stretch: see rest_shapes()
+    # [V, 8], with keeps_contacts: outward unit normal n (zeros: none), offset d, m (kept at n·x ≥ d), velocity of the
+    # body there, m/s, coefficient of friction
+    contacts: Union[npt.ArrayLike, DeviceArray]
     acceleration: Sequence[float]  # m/s², three, with integrates
     damping: float  # 1/s, ≥ 0, with integrates
     stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small from 20 sub-steps up

@@ -110,6 +110,9 @@ constexpr Options stretch_each{
     .execution = Execution::many_groups, .limits_stretch = true, .stretch_ceiling_per_triangle = true};
 constexpr Options step{.execution = Execution::many_groups, .integrates = true};
 constexpr Options step_with_ceiling{.execution = Execution::many_groups, .limits_stretch = true, .integrates = true};
+constexpr Options contact{.execution = Execution::many_groups, .keeps_contacts = true};
+constexpr Options step_contact_ceiling{
+    .execution = Execution::many_groups, .limits_stretch = true, .integrates = true, .keeps_contacts = true};
 constexpr Options one_group{.execution = Execution::one_group};
 
 Scenario one_cloth(std::string name, const Options& options, const Parameters& parameters, int calls = 1) {
@@ -165,6 +168,8 @@ std::vector<Scenario> small_scenarios() {
         one_cloth("step_arrays_64", groups_of_64(structure_of_arrays(warm_step_alpha_each)), falling(p), 2),
         one_cloth("step_stretch", step_with_ceiling, falling(growing(p))),
         one_cloth("step_stretch_xyzw_64", groups_of_64(xyzw(step_with_ceiling)), falling(growing(p))),
+        one_cloth("contact", contact, small_steps(p)),
+        one_cloth("step_contact_ceiling_64", groups_of_64(step_contact_ceiling), falling(growing(p))),
         one_cloth("one_group", one_group, short_solve(p)),
         of("one_group_xyzw_64", groups_of_64(xyzw(one_group)), small_steps(short_solve(p)), small()),
         of("one_group_arrays_64", groups_of_64(structure_of_arrays(one_group)), short_solve(p), small()),

@@ -32,9 +32,9 @@ bool DeviceFilter::fits(const FuzzCase& c) const {
 std::vector<Filtered> DeviceFilter::call(const std::vector<MovingCloth>& cloths,
                                          std::span<const Parameters> parameters) {
     const CallerBuffers buffers(cloths, options_, offset_);
-    const DeviceArray<float>* const inputs[] = {&buffers.positions,   &buffers.inverse_masses,
-                                                &buffers.rest_areas,  &buffers.regularization,
-                                                &buffers.rest_shapes, &buffers.stretch_ceilings};
+    const DeviceArray<float>* const inputs[] = {
+        &buffers.positions,   &buffers.inverse_masses,   &buffers.rest_areas, &buffers.regularization,
+        &buffers.rest_shapes, &buffers.stretch_ceilings, &buffers.contacts};
     std::vector<std::vector<float>> given;
     for (const auto* input : inputs) given.push_back(input->read());
     const std::vector<Stats> stats = filter(*limiter_, buffers, parameters);
@@ -74,10 +74,12 @@ std::vector<Filtered> ReferenceFilter<Real>::call(const std::vector<MovingCloth>
         const std::vector<Real> alpha = real_where(options_.regularization_per_triangle, cloth.regularization);
         const std::vector<Real> shapes = real_where(options_.limits_stretch, cloth.rest_shapes);
         const std::vector<Real> ceilings = real_where(options_.stretch_ceiling_per_triangle, cloth.stretch_ceilings);
+        const std::vector<Real> contacts = real_where(options_.keeps_contacts, cloth.contacts);
         std::vector<Real> velocities = real(cloth.velocities);
         const bool refused = refused_by_reference(cloth);
         try {
-            limiters_[n].enqueue({positions, velocities, masses, areas, alpha, shapes, ceilings}, parameters[n]);
+            limiters_[n].enqueue({positions, velocities, masses, areas, alpha, shapes, ceilings, contacts},
+                                 parameters[n]);
             if (refused) throw std::runtime_error("took what it has to refuse");
         } catch (const Error& error) {
             if (!refused) throw;

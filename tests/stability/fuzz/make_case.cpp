@@ -5,6 +5,7 @@
 #include "stability/fuzz/random_mesh.hpp"
 #include "stability/fuzz/random_state.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace apsl::test {
@@ -49,7 +50,8 @@ Options random_options(std::uint64_t number) {
     return options;
 }
 
-Parameters random_parameters(Random& random, bool may_adapt, bool limits_stretch, bool may_follow) {
+Parameters random_parameters(Random& random, bool may_adapt, const Options& options, bool may_follow) {
+    const bool limits_stretch = options.limits_stretch, keeps_contacts = options.keeps_contacts;
     Parameters p;
     if (limits_stretch) p.stretch_ceiling = random.one_of({0.0f, 1.01f, 1.1f, 1.1f, 1.1f, 2.0f, 1e6f});
     p.time_step = random.one_of({1.0f / 60.0f, 1.0f / 60.0f, 1e-3f, 0.1f, 1e-6f});
@@ -65,6 +67,11 @@ Parameters random_parameters(Random& random, bool may_adapt, bool limits_stretch
     if (limits_stretch) p.most_sub_steps = p.sub_steps;
     if (may_follow && p.stepping != Stepping::whole_step && p.first_regularization == 0.0f && random.chance(0.7))
         p.most_sub_steps = random.one_of({0, p.sub_steps + 1, p.sub_steps + 7, p.sub_steps + 40});
+    if (keeps_contacts) {
+        p.sub_steps = std::max(p.sub_steps, 2);
+        if (p.stepping == Stepping::whole_step) p.stepping = Stepping::automatic;
+        p.most_sub_steps = std::max(p.most_sub_steps, p.sub_steps);
+    }
     p.enabled = !random.chance(0.05);
     if (may_adapt) p.adaptive_threshold = random.one_of({1, 4, 20});
     return p;
@@ -87,6 +94,8 @@ void CaseMaker::begin_block(std::uint64_t block) {
     block_ = block;
     Random random(seed_, 2 * block);
     options_ = random_options(block % option_sets);
+    // Every other time round, a stretch ceiling for each triangle comes with contacts.
+    options_.keeps_contacts = block % (2 * option_sets) == 2 * option_sets - 1;
     meshes_.clear();
     for (std::uint32_t n = random.from_to(1, 3); n > 0; --n) meshes_.push_back(random_mesh(random));
     // Kernels are compiled for the greatest number of vertices in a patch: always that of this one.
@@ -112,7 +121,7 @@ FuzzCase CaseMaker::make(std::uint64_t number) {
     for (std::uint32_t calls = random.one_of({1u, 1u, 1u, 2u, 3u}); calls > 0; --calls) {
         FuzzCall call;
         for (std::size_t n = 0; n < c.cloths.size(); ++n)
-            call.parameters.push_back(random_parameters(random, may_adapt, options_.limits_stretch, may_follow));
+            call.parameters.push_back(random_parameters(random, may_adapt, options_, may_follow));
         call.carries_on = random.chance(0.5);
         if (random.chance(0.1)) call.bad = random_bad_number(random, c);
         c.calls.push_back(call);

@@ -39,7 +39,10 @@ void print(const MovingCloth& cloth, const Options& options, std::ostream& out) 
         for (std::size_t k = 0; k < 3; ++k) out << ' ' << cloth.positions[3 * v + k];
         out << ", velocity";
         for (std::size_t k = 0; k < 3; ++k) out << ' ' << cloth.velocities[3 * v + k];
-        out << ", inverse mass " << cloth.inverse_masses[v] << '\n';
+        out << ", inverse mass " << cloth.inverse_masses[v];
+        if (options.keeps_contacts)
+            for (std::size_t k = 0; k < 8; ++k) out << (k == 0 ? ", contact " : " ") << cloth.contacts[8 * v + k];
+        out << '\n';
     }
     for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a) {
         out << "  triangle " << a << ':';

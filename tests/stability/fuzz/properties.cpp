@@ -6,6 +6,7 @@
 #include "support/tolerances.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <sstream>
@@ -46,6 +47,26 @@ Check check_velocities(const MovingCloth& cloth, const Filtered& filtered) {
 Check check_idle(const MovingCloth& cloth, const Filtered& filtered) {
     if (filtered.stats.sub_steps == 0 && !same_velocities(cloth.velocities, filtered.velocities))
         return broken("no sub-step, but velocities changed", {});
+    return {};
+}
+
+// Every free vertex is led outside of what it touches.
+Check check_outside(const MovingCloth& cloth, const CallFacts& facts, const Parameters& parameters,
+                    const Filtered& filtered) {
+    if (filtered.stats.status == Status::diverged || !facts.ordinary_numbers) return {};
+    const auto time_step = static_cast<double>(parameters.time_step);
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
+        const double* contact = cloth.contacts.data() + 8 * v;
+        const std::array<double, 3> normal{contact[0], contact[1], contact[2]};
+        if (cloth.inverse_masses[v] == 0.0 || normal == std::array<double, 3>{}) continue;
+        double depth = contact[3];
+        for (std::size_t k = 0; k < 3; ++k)
+            depth -= normal[k] * (cloth.positions[3 * v + k] + time_step * filtered.velocities[3 * v + k]);
+        const double allowed = 4.0 * facts.position_error + 1e-5 * std::abs(contact[3]);
+        if (depth > allowed)
+            return broken("a vertex ends inside of what it touches",
+                          {{"vertex", static_cast<double>(v)}, {"depth", depth}, {"allowed", allowed}});
+    }
     return {};
 }
 
@@ -240,7 +261,9 @@ std::optional<Violation> violation_of(const MovingCloth& cloth, const Options& o
     Check check = check_velocities(cloth, filtered);
     if (!check) check = check_status(facts, parameters, options, filtered);
     if (!check) check = check_statistics(facts, parameters, filtered);
-    if (!check) check = check_never_worse(facts, options, filtered);
+    // Contact is part of both ends that are compared.
+    if (!check && !options.keeps_contacts) check = check_never_worse(facts, options, filtered);
+    if (options.keeps_contacts) return check ? check : check_outside(cloth, facts, parameters, filtered);
     // The bounds below are those of areas with the masses as given.
     if (options.limits_stretch) return check ? check : check_idle(cloth, filtered);
     if (!check) check = check_bound(cloth, facts, options, parameters, filtered);

@@ -177,11 +177,13 @@ private:
             smaller.positions.clear();
             smaller.velocities.clear();
             smaller.inverse_masses.clear();
+            smaller.contacts.clear();
             const auto offsets = cloth.topology->corner_offsets();
             for (std::size_t v = 0; v < place.size(); ++v) {
                 if (offsets[v] == offsets[v + 1]) continue;
                 place[v] = static_cast<std::uint32_t>(smaller.inverse_masses.size());
                 smaller.inverse_masses.push_back(cloth.inverse_masses[v]);
+                for (std::size_t k = 0; k < 8; ++k) smaller.contacts.push_back(cloth.contacts[8 * v + k]);
                 for (std::size_t k = 0; k < 3; ++k) {
                     smaller.positions.push_back(cloth.positions[3 * v + k]);
                     smaller.velocities.push_back(cloth.velocities[3 * v + k]);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "filter/filtered.hpp"
+
+#include <vector>
+
+namespace apsl::test {
+
+/// Where a whole step ends (Options::integrates).
+struct Ended {
+    std::vector<double> positions, velocities;
+    Stats stats;
+};
+
+Ended step_on_device(StrainLimiter& limiter, const MovingCloth& cloth, const Options& options,
+                     const Parameters& parameters);
+/// The same in a limiter of its own.
+Ended step_on_device(const MovingCloth& cloth, const Options& options, const Parameters& parameters);
+Ended step_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters);
+
+}  // namespace apsl::test
