@@ -11,6 +11,7 @@ MESHES is the folder of skirt.obj, tshirt.obj and dress.obj. About five minutes 
 import argparse
 import hashlib
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -74,6 +75,8 @@ if __name__ == "__main__":
     options = parser.parse_args()
     if problems := list(missing(options.meshes)):
         sys.exit("\n".join([*problems, f"The meshes are those of {SOURCE}."]))
+    if not shutil.which(options.program):
+        sys.exit(f"{options.program}: no such program; build it as the README says, or name it with --program")
     print("| garment | springs | filter | greatest (mean) | edges | principal stretch |\n|---|---|---|---|---|---|")
     for name, garment in GARMENTS.items():
         for stiffness in (50, 5):

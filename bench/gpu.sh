@@ -40,7 +40,12 @@ while [[ "${1:-}" == -* ]]; do
     --driver) driver="$2" ;;
     --device) expect_number "$1" "$2"; number="$2" ;;
     --seconds) expect_number "$1" "$2"; total="$2" ;;
-    --grids) for grid in $2; do expect_number "$1" "$grid"; done; grids="$2" ;;
+    --grids)
+      for grid in $2; do
+        [[ "$grid" =~ ^([2-9]|[1-9][0-9]{1,3})$ ]] || stop "--grids $grid: expected vertices a side, 2 to 9999"
+      done
+      grids="$2"
+      ;;
     --copy-megabytes) expect_number "$1" "$2"; copy_megabytes="$2" ;;
     --tests) tests="$2" ;;
   esac

@@ -18,12 +18,12 @@ APSLK_KERNEL void assemble_gradients(__global const apslk_cloth* cloths, __globa
                                      int for_solve) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const apslk_assembly_sums sums =
-        assemble_triangles(cloths[c], !states[c].stopped, parameters[c].regularization,
-                           scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_step),
-                           states[c].adaptive_factor, triangles, moved, gradients, residual, scaled_diagonal,
-                           rest_areas, regularization, small_step_count(parameters[c]),
-                           start_error_left(sub_step, small_step_count(parameters[c])), for_solve != 0, start_errors);
+    const apslk_assembly_sums sums = assemble_triangles(
+        cloths[c], !states[c].stopped, parameters[c].regularization,
+        scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_step),
+        states[c].adaptive_factor, triangles, moved, gradients, residual, scaled_diagonal, rest_areas, regularization,
+        small_step_count(parameters[c]), start_error_left(sub_step, small_step_count(parameters[c])), for_solve != 0,
+        excess_asked_again(states[c].asked_sub_steps, parameters[c].sub_steps), start_errors);
     store_area_partials(sums.areas, partials, scratch);
     store_partial(partials, APSLK_PARTIAL_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.squares), scratch));
     store_partial(partials, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.scaled_squares), scratch));

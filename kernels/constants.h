@@ -44,6 +44,9 @@
 // What a sub-step was asked to take of an excess and could not is asked of the next no faster than this a step: pins
 // that leave no room below a ceiling have it give way, where tension would grow without bound.
 #define APSLK_EXCESS_ASKED_AGAIN 0.45f
+// Up to twice as fast where the calls before had little tension: the square of the sub-steps that it asked for, over
+// those that are taken, is below this.
+#define APSLK_LITTLE_TENSION 0.4f
 // Where areas are better than before, an excess of stretch may be greater by this factor: pins may leave no room.
 #define APSLK_GROWTH_LET_PASS 1.5f
 // Added mass of a vertex, in stiffnesses of the tension around it.

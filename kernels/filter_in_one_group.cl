@@ -69,7 +69,7 @@ APSLK_KERNEL void filter_in_one_group(
             scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_steps),
             states[c].adaptive_factor, triangles, moved, gradients, residual, scaled_diagonal, ordered_rest_areas,
             ordered_scaling, small_step_count(parameters[c]),
-            started ? start_error_left(sub_steps, small_step_count(parameters[c])) : 0.0f, true, start_errors);
+            started ? start_error_left(sub_steps, small_step_count(parameters[c])) : 0.0f, true, 0.0f, start_errors);
         const apslk_area_change change = area_change_in_group(sums.areas, scratch);
         const float not_finite = group_sum(sum_of_lanes(sums.areas.not_finite), scratch);
         apslk_solve solve = begin_solve_in_group(group_sum(sum_of_lanes(sums.squares), scratch),

@@ -31,6 +31,12 @@ APSLK_INLINE float next_asked_sub_steps(float asked, int sub_steps, float mass_r
     return fmax(APSLK_ASKED_KEPT * asked, by_tension);
 }
 
+// How fast, a step, a sub-step asks again for an excess that it could not take. `asked`: by the calls before.
+APSLK_INLINE float excess_asked_again(float asked, int sub_steps) {
+    const float tension = asked * asked / ((float)sub_steps * (float)sub_steps);
+    return APSLK_EXCESS_ASKED_AGAIN * clamp(APSLK_LITTLE_TENSION / tension, 1.0f, 2.0f);
+}
+
 // The share of the start's area error that stays for now.
 APSLK_INLINE float start_error_left(int sub_step, int small_steps) {
     const int planned = small_steps - (APSLK_LIMITS_STRETCH ? APSLK_PARTS_OF_LEAD : 1) * (sub_step + 1);

@@ -38,10 +38,10 @@ APSLK_INLINE lanes4 zero_unless(lanes_int condition, lanes4 v) {
 }
 
 // The excess over a ceiling that the next of `small_steps` sub-steps lets stand, from what this one lets stand and what
-// there is before it, and was at the start of the step.
-APSLK_INLINE lanes next_held_excess(lanes held, lanes excess, lanes start, int small_steps) {
+// there is before it, and was at the start of the step. `asked_again`: a step (excess_asked_again).
+APSLK_INLINE lanes next_held_excess(lanes held, lanes excess, lanes start, int small_steps, float asked_again) {
     const float part = 1.0f / (float)small_steps;
-    const lanes could_not = excess - APSLK_EXCESS_TAKEN * (excess - held) - APSLK_EXCESS_ASKED_AGAIN * part;
+    const lanes could_not = excess - APSLK_EXCESS_TAKEN * (excess - held) - asked_again * part;
     return fmax(exp(-APSLK_EXCESS_LEAD * part) * held, fmin(could_not, start));
 }
 

@@ -103,17 +103,18 @@ typedef struct {
 
 // The stretch rows of triangles with this `stretch`, whose area rows have `area_excess` for right-hand side and
 // `area_scale`.
-APSLK_INLINE apslk_assembled_stretches assemble_stretch_rows(
-    apslk_cloth cloth, apslk_triangle_geometry t, apslk_rest_shape shape, apslk_principal_stretch stretch,
-    lanes rest_area, lanes area_excess, lanes area_scale, __global const uint* triangles,
-    __global const float* vertex_bounds, __global apslk_gradients* gradients, __global float* residual,
-    __global float* scaled_diagonal, int small_steps, bool for_solve, __global float* start_errors, uint a) {
+APSLK_INLINE apslk_assembled_stretches
+assemble_stretch_rows(apslk_cloth cloth, apslk_triangle_geometry t, apslk_rest_shape shape,
+                      apslk_principal_stretch stretch, lanes rest_area, lanes area_excess, lanes area_scale,
+                      __global const uint* triangles, __global const float* vertex_bounds,
+                      __global apslk_gradients* gradients, __global float* residual, __global float* scaled_diagonal,
+                      int small_steps, bool for_solve, float asked_again, __global float* start_errors, uint a) {
     lanes ceiling = shape.ceiling;
     if (small_steps > 0) {  // uniform
         const lanes held = load_lanes(start_errors + APSLK_HELD_EXCESS * cloth.run, a);
         const lanes start = load_lanes(start_errors + APSLK_START_EXCESS * cloth.run, a);
         if (for_solve)  // uniform
-            store_lanes(next_held_excess(held, stretch.value - ceiling, start, small_steps),
+            store_lanes(next_held_excess(held, stretch.value - ceiling, start, small_steps, asked_again),
                         start_errors + APSLK_HELD_EXCESS * cloth.run, a);
         ceiling += held;
     }
@@ -157,7 +158,7 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
                                                     __global float* residual, __global float* scaled_diagonal,
                                                     __global const float* rest, __global const float* regularization,
                                                     int small_steps, float error_left, bool for_solve,
-                                                    __global float* start_errors) {
+                                                    float asked_again, __global float* start_errors) {
     const apslk_range range = share_of(blocks_of(cloth), active);
     apslk_assembly_sums sums;
     sums.areas = no_areas();
@@ -202,12 +203,13 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
         const apslk_principal_stretch stretch = principal_stretch(triangle, shape);
         const apslk_assembled_stretches stretches = assemble_stretch_rows(
             cloth, triangle, shape, stretch, rest_area, area_excess, scale, triangles, regularization, gradients,
-            residual, scaled_diagonal, small_steps, for_solve, start_errors, a);
+            residual, scaled_diagonal, small_steps, for_solve, asked_again, start_errors, a);
         shift = stretches.take_part;
         sums.squares += stretches.squares;
         add_stretches(&sums.areas, rest_area, shape, stretch.value);
 #else
         (void)for_solve;
+        (void)asked_again;
 #endif
         lanes_int words[8];
         pack_gradient(cross_product(triangle.normal, triangle.edge[0]), triangle.inverse_mass[0], scale, words);

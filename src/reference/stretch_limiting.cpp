@@ -21,11 +21,11 @@ constexpr ConstraintRow<Real> no_row() {
 }
 
 /// The excess that the next of `small_steps` sub-steps lets stand, from what this one lets stand and what there is
-/// before it: what this one is asked to take and cannot is asked for again slowly.
+/// before it: what this one is asked to take and cannot is asked for again slowly, `asked_again` a step.
 template <class Real>
-Real next_held_excess(Real held, Real excess, Real start, int small_steps) {
-    const Real part = Real(1) / static_cast<Real>(small_steps);
-    const Real could_not = excess - Real(excess_taken) * (excess - held) - Real(APSLK_EXCESS_ASKED_AGAIN) * part;
+Real next_held_excess(Real held, Real excess, Real start, const StretchSolve& how) {
+    const Real part = Real(1) / static_cast<Real>(how.small_steps);
+    const Real could_not = excess - Real(excess_taken) * (excess - held) - Real(how.asked_again) * part;
     return std::max(std::exp(-Real(APSLK_EXCESS_LEAD) * part) * held, std::min(could_not, start));
 }
 
@@ -112,15 +112,15 @@ StretchExcess StretchLimiting<Real>::measure(std::span<const Real> positions) co
 /// What triangle a's ceiling demands beyond its area row; zero where it takes no part.
 template <class Real>
 ConstraintRow<Real> StretchLimiting<Real>::limited_row(std::size_t a, std::span<const Real> positions,
-                                                       const ConstraintRow<Real>& area, int small_steps) {
+                                                       const ConstraintRow<Real>& area, const StretchSolve& how) {
     share_[a] = Real(0);
     if (ceilings_[a] == Real(0)) return no_row<Real>();
     const Triangle& triangle = topology_->triangles()[a];
     const Real ceiling = ceilings_[a] + held_excess_[a];
     const ConstraintRow<Real> row = stretch_row(shapes_[a], triangle, positions, rest_areas_[a], ceiling);
     stretch_[a] = ceiling + row.value / rest_areas_[a];
-    if (small_steps > 0)
-        held_excess_[a] = next_held_excess(held_excess_[a], stretch_[a] - ceilings_[a], start_excess_[a], small_steps);
+    if (how.small_steps > 0)
+        held_excess_[a] = next_held_excess(held_excess_[a], stretch_[a] - ceilings_[a], start_excess_[a], how);
     if (!(stretch_[a] > ceiling - Real(stretch_margin))) return no_row<Real>();
     const std::array<Real, 3> w{inverse_masses_[triangle[0]], inverse_masses_[triangle[1]],
                                 inverse_masses_[triangle[2]]};
@@ -139,7 +139,7 @@ void StretchLimiting<Real>::solve(std::span<const Real> positions, std::span<con
     for (std::size_t a = 0; a < count; ++a) {
         rows_[a] = area_row(geometry[a], Real(0));
         rows_[a].value = area_excess[static_cast<Eigen::Index>(a)];
-        rows_[count + a] = limited_row(a, positions, rows_[a], how.small_steps);
+        rows_[count + a] = limited_row(a, positions, rows_[a], how);
     }
     system_ = row_system<Real>(*topology_, rows_, owners_, inverse_masses_);
     const SparseMatrix<Real> G = row_matrix<Real>(system_, inverse_masses_);

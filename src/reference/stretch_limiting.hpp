@@ -4,6 +4,8 @@
 #include "reference/chebyshev.hpp"
 #include "reference/stretch_rows.hpp"
 
+#include "../../kernels/constants.h"
+
 #include <apsl/reference.hpp>
 
 #include <cstdint>
@@ -25,6 +27,8 @@ struct StretchExcess {
 struct StretchSolve {
     int small_steps = 0;  ///< of the call
     int products = 1;     ///< of the polynomial
+    /// How fast, a step, an excess is asked for again that a sub-step could not take.
+    float asked_again = APSLK_EXCESS_ASKED_AGAIN;
 };
 
 /// The stretch ceiling of one call: two rows a triangle, of its area and of its greatest principal stretch, solved
@@ -60,7 +64,7 @@ private:
     Real stretch(std::size_t a, std::span<const Real> positions) const;  ///< s₁
     Real excess(std::size_t a, Real stretch) const;                      ///< of a triangle with a ceiling
     ConstraintRow<Real> limited_row(std::size_t a, std::span<const Real> positions, const ConstraintRow<Real>& area,
-                                    int small_steps);
+                                    const StretchSolve& how);
     void find_tension(std::span<const TriangleGeometry<Real>> geometry);
 
     const Topology* topology_ = nullptr;

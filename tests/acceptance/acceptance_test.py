@@ -76,6 +76,34 @@ class Curtain(Case):
             self.assertEqual(positions[pinned].tobytes(), at_rest.tobytes(), f"frame {number}")
 
 
+class StretchCeiling(Case):
+    """A ceiling of 1.1, on the curtain and on a smaller one whose pin draws a corner far out and lets it come back."""
+
+    CEILING = ("--set", 'strain_limiting={"stretch_ceiling": 1.1}')
+    # Around a circle of 0.1 m, within half a second: 0.2 m further than there is cloth.
+    DRAWN = [{"vertices": [0]}, {"vertices": [32], "motion": {
+        "rotate": {"axis": [0, 1, 0], "degrees_per_second": 720, "center": [0.6, 0, -0.5]}, "stop": 0.5}}]
+
+    @classmethod
+    def run_scenes(cls):
+        cls.curtain = cls.run_scene("ceiling", "curtain.json", *cls.CEILING, "--frames", "60")
+        cls.drawn = cls.run_scene("drawn", "curtain.json", *cls.CEILING, "--frames", "60",
+                                  "--set", "mesh.grid.vertices=[33, 33]", "--set", f"pins={json.dumps(cls.DRAWN)}")
+
+    def test_areas_edges_and_stretch_are_held_at_once(self):
+        frames = self.curtain["frames"][10:]
+        self.assertTrue(all(frame["status"] == "ok" for frame in frames))
+        self.assertLessEqual(max(frame["max_area_change"] for frame in frames), 0.02)
+        self.assertLessEqual(max(frame["max_edge_stretch"] for frame in frames), 1.12)
+        self.assertLessEqual(max(frame["max_principal_stretch"] for frame in frames), 1.125)
+
+    def test_what_a_pin_drew_far_out_comes_back(self):
+        frames = self.drawn["frames"]
+        self.assertGreater(max(frame["max_principal_stretch"] for frame in frames), 1.5)
+        self.assertLessEqual(frames[-1]["max_principal_stretch"], 1.12)
+        self.assertLessEqual(frames[-1]["max_area_change"], 0.01)
+
+
 class PaperFigures(Case):
     """The paper's 96.3 % to 1.94 % (Fig. 1) and 4.77 % in the stand-alone mode (Fig. 6)."""
 

@@ -82,13 +82,11 @@ void refuse_in_c(const MovingCloth& cloth) {
 
 void make_and_use_in_c(const MovingCloth& cloth, const CallerBuffers& buffers) {
     const Buffers v = buffers.views();
-    const apsl_buffers views{{v.positions.buffer, v.positions.offset},
-                             {v.velocities.buffer, v.velocities.offset},
-                             {v.inverse_masses.buffer, v.inverse_masses.offset},
-                             {v.rest_areas.buffer, v.rest_areas.offset},
-                             {nullptr, 0},
-                             {nullptr, 0},
-                             {nullptr, 0}};
+    apsl_buffers views{};
+    views.positions = {v.positions.buffer, v.positions.offset};
+    views.velocities = {v.velocities.buffer, v.velocities.offset};
+    views.inverse_masses = {v.inverse_masses.buffer, v.inverse_masses.offset};
+    views.rest_areas = {v.rest_areas.buffer, v.rest_areas.offset};
     const Owned<cl_command_queue> queue = in_order_queue();
     apsl_stats stats{};
     std::size_t scratch_bytes = 0;

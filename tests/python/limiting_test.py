@@ -133,6 +133,8 @@ class WholeStep(unittest.TestCase):
         for wrong in (floor[:2], floor[:, :7], "x"):
             with self.assertRaisesRegex(apsl.Error, "contacts"):
                 made.step(CORNER, velocities, [2, 2, 2], [0.5], contacts=wrong)
+        with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'contact', expected contacts"):
+            made.step(CORNER, velocities, [2, 2, 2], [0.5], contact=floor)
         with self.assertRaisesRegex(apsl.Error, "contacts: got nothing"):
             made.step(CORNER, velocities, [2, 2, 2], [0.5])
 

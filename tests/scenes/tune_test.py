@@ -120,6 +120,11 @@ class Tune(unittest.TestCase):
         for arguments, what in (
                 ((self.scene,), "--target"), ((self.scene, "--target", "0"), "target"),
                 ((self.scene, "--target", "0.1", "--target-stretch", "1"), "target-stretch"),
+                ((self.scene, "--target", "nan"), "--target: is nan, expected a finite number > 0"),
+                ((self.scene, "--target", "0.1", "--target-stretch", "nan"),
+                 "--target-stretch: is nan, expected a finite number >= 1.01"),
+                ((self.scene, "--target", "0.1", "--budget-ms", "inf"),
+                 "--budget-ms: is inf, expected a finite number > 0"),
                 ((self.scene, "--target", "0.1", "--budget-ms", "-1"), "budget-ms"),
                 ((self.folder / "absent.json", "--target", "0.1"), "no such scene file"),
                 ((self.scene, "--target", "0.1", "--set", "density=-1"), "density"),

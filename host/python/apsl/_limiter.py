@@ -60,6 +60,7 @@ class StrainLimiter:
         copying = self._with_copies("limit")
         if self.options["integrates"]:
             raise Error("limit: the limiter was made with integrates=True, expected a call of step()")
+        _check_arrays("limit", self.options, {**parameters})
         limited, stats = copying.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
         return limited, Stats(**stats)
 
@@ -74,6 +75,7 @@ class StrainLimiter:
         copying = self._with_copies("step")
         if not self.options["integrates"]:
             raise Error("step: the limiter was made with integrates=False, expected a call of limit()")
+        _check_arrays("step", self.options, {**parameters})
         moved, limited, stats = copying.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
         return moved, limited, Stats(**stats)
 
@@ -100,10 +102,9 @@ class StrainLimiter:
         if options["positions_only"] and velocities is None:
             del given["velocities"]
         settings: dict[str, Any] = {**parameters}
+        _check_arrays("enqueue", options, settings)
         for name, option in _optional_arrays.items():
             if options[option]:
-                if name not in settings:
-                    raise _opencl.refuse(name, "nothing", f"an array (limiter made with {option})")
                 given[name] = settings.pop(name)
         places = {name: _opencl.place(array, name, *layouts[name]) for name, array in given.items()}
         before = _opencl.addresses(wait_for)
@@ -147,6 +148,16 @@ class StrainLimiter:
 
 _optional_arrays = {"regularization": "regularization_per_triangle", "rest_shapes": "limits_stretch",
                     "stretch_ceiling": "stretch_ceiling_per_triangle", "contacts": "keeps_contacts"}
+
+
+def _check_arrays(call: str, options: dict[str, Any], settings: dict[str, Any]) -> None:
+    """Raises where an array is missing that the options ask for: TypeError where it may have been misspelt."""
+    for name, option in _optional_arrays.items():
+        if options[option] and name not in settings:
+            unknown = settings.keys() - StrainLimiter.default_parameters().keys() - _optional_arrays.keys()
+            if unknown:
+                raise TypeError(f"{call}() got an unexpected keyword argument '{min(unknown)}', expected {name}")
+            raise _opencl.refuse(name, "nothing", f"an array (limiter made with {option})")
 
 
 def _layouts(vertices: int, triangles: int,

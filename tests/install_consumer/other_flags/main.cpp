@@ -47,7 +47,11 @@ int main() {
         return apsl_buffer_view{clCreateBuffer(context, CL_MEM_COPY_HOST_PTR, floats * sizeof(float), numbers, nullptr),
                                 0};
     };
-    const apsl_buffers buffers{upload(9), upload(9), upload(3), upload(1), {nullptr, 0}, {nullptr, 0}, {nullptr, 0}};
+    apsl_buffers buffers{};
+    buffers.positions = upload(9);
+    buffers.velocities = upload(9);
+    buffers.inverse_masses = upload(3);
+    buffers.rest_areas = upload(1);
     const auto enqueue = [&](const apsl_parameters& parameters) {
         return apsl_limiter_enqueue(limiter, queue, &buffers, &parameters, 1, 0, nullptr, nullptr);
     };
