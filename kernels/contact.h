@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a vertex touches, and how it is kept outside (docs/formulation.md, Contact). Reference: apsl::reference, contact.
+// What a vertex touches, and how it is kept outside (docs/formulation.md, Contact). Reference: apsl::reference,
+// contact.
 #ifndef APSLK_CONTACT_H
 #define APSLK_CONTACT_H
 

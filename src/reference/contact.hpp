@@ -24,7 +24,9 @@ struct Contact {
         : Contact(contacts.subspan(APSLK_CONTACT_SIZE * vertex, APSLK_CONTACT_SIZE)) {}
 
     explicit Contact(std::span<const Real> numbers)
-        : normal(position(numbers, 0)), offset(numbers[3]), velocity(position(numbers.subspan(4), 0)),
+        : normal(position(numbers, 0)),
+          offset(numbers[3]),
+          velocity(position(numbers.subspan(4), 0)),
           friction(numbers[7]) {}
 
     /// m, ≥ 0: how deep x lies in the body a time `time_left` before the end of the step.

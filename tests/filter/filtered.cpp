@@ -113,7 +113,8 @@ void check_against_reference(const Filtered& got, const MovingCloth& cloth, cons
     CHECK(got.stats.status == want.stats.status);
     CHECK(got.stats.sub_steps == want.stats.sub_steps);
     CHECK(std::abs(got.stats.iterations - want.stats.iterations) <= want.stats.sub_steps);
-    CHECK((got.stats.status != Status::ok || got.stats.residual <= ResolvedParameters(parameters, options).solve_tolerance));
+    CHECK((got.stats.status != Status::ok ||
+           got.stats.residual <= ResolvedParameters(parameters, options).solve_tolerance));
 
     // What the device says of the areas, against the areas its velocities lead to. Positions round at their own size:
     // relative to a triangle's height that is the relative error of its area.
