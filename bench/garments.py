@@ -11,7 +11,6 @@ MESHES is the folder of skirt.obj, tshirt.obj and dress.obj. About five minutes 
 import argparse
 import hashlib
 import json
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -75,13 +74,14 @@ if __name__ == "__main__":
     options = parser.parse_args()
     if problems := list(missing(options.meshes)):
         sys.exit("\n".join([*problems, f"The meshes are those of {SOURCE}."]))
-    if not shutil.which(options.program):
+    program = options.program.resolve()
+    if not program.is_file():
         sys.exit(f"{options.program}: no such program; build it as the README says, or name it with --program")
     print("| garment | springs | filter | greatest (mean) | edges | principal stretch |\n|---|---|---|---|---|---|")
     for name, garment in GARMENTS.items():
         for stiffness in (50, 5):
             for title, limiter in LIMITERS.items():
-                report = frames(options.program,
+                report = frames(program,
                                 scene((options.meshes / name).resolve(), garment.pins, stiffness, limiter))
 
                 def greatest(key):
