@@ -252,8 +252,9 @@ TEST_CASE("the printed matrix below 2 is warned of, the consistent one is not") 
     CHECK_THAT(run_apsl(command).errors, !Catch::Contains("warning"));
 }
 
-TEST_CASE("stand-alone springs that had to be added are warned of") {
-    const std::string command = "validate " + scene_path("stand_alone_curtain.json") + " --set mesh.grid.diagonals=";
+TEST_CASE("bending springs that had to be added are warned of") {
+    const std::string command = "validate " + scene_path("stand_alone_curtain.json") +
+                                " --set integrator.bending_springs={} --set mesh.grid.diagonals=";
     CHECK_THAT(run_apsl(command + "alternating").errors,
                Catch::StartsWith("warning: ") && Catch::Contains("lattices that only areas join"));
     CHECK(run_apsl(command + "random").errors.empty());
