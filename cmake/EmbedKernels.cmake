@@ -1,6 +1,6 @@
 # Run as a script at build time: writes OUTPUT, a C++ source that holds FILES (names below DIRECTORY, separated by |) as
 # bytes. Hex rather than string literals: nothing to escape, no limit on length. Constant expressions: a limiter in a global
-# object may need them before this file's dynamic initialisation.
+# object may need them before this file's dynamic initialisation. HEADER declares kernel_sources() in NAMESPACE.
 string(REPLACE "|" ";" files "${FILES}")
 set(arrays "")
 set(table "")
@@ -12,21 +12,21 @@ foreach(file IN LISTS files)
   string(APPEND table "    {\"${file}\", {${name}, sizeof ${name}}},\n")
 endforeach()
 file(WRITE "${OUTPUT}.new" "// Made by cmake/EmbedKernels.cmake.
-#include \"kernel_sources.hpp\"
+#include \"${HEADER}\"
 
-namespace apsl::host {
+namespace ${NAMESPACE} {
 namespace {
 
 ${arrays}
-constexpr KernelSource sources[] = {
+constexpr apsl::host::KernelSource sources[] = {
 ${table}};
 
 }  // namespace
 
-std::span<const KernelSource> kernel_sources() {
+std::span<const apsl::host::KernelSource> kernel_sources() {
     return sources;
 }
 
-}  // namespace apsl::host
+}  // namespace ${NAMESPACE}
 ")
 file(RENAME "${OUTPUT}.new" "${OUTPUT}")

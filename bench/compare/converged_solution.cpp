@@ -87,6 +87,10 @@ nlohmann::ordered_json to_json(const ConvergedSettings& settings) {
 std::optional<ConvergedSolution> converged_solution(const SceneCase& scene, const ConvergedSettings& settings,
                                                     std::span<const int> frames, const std::filesystem::path& cache) {
     const scenes::Scene parsed = scenes::parse_scene(scene.document, scene.file);
+    if (std::holds_alternative<scenes::StandAloneIntegrator>(parsed.integrator))
+        throw scenes::InputError(scene.name +
+                                 ": a converged solution is of a filter, expected a scene whose integrator "
+                                 "is not stand_alone");
     const json key = key_of(scene, parsed, settings);
     if (auto cached = read_cache(cache, key, frames)) return cached;
 

@@ -35,8 +35,8 @@ scenes::FilterStage make_filter(const PlannedRun& run, const RunConditions& cond
     return make_baseline_filter(*run.method->baseline, parameters, cloth, scene.time_step);
 }
 
-std::string device_name(const scenes::FilterStage& filter) {
-    if (const auto* opencl = std::get_if<scenes::OpenClFilter>(&filter)) return opencl->device_name();
+std::string device_name(scenes::FilterStage& filter) {
+    if (const scenes::OpenClCloth* device = scenes::on_device(filter)) return device->device_name();
     if (const auto* custom = std::get_if<scenes::CustomFilter>(&filter)) return custom->device;
     return "none";
 }
@@ -81,8 +81,8 @@ std::optional<MeasuredRun> measure_run(const PlannedRun& run, const RunCondition
         result.frames.push_back(simulation.run_frame());
         result.breakdown = simulation.breakdown();
         if (conditions.profile) {
-            if (auto* opencl = std::get_if<scenes::OpenClFilter>(&simulation.filter()))
-                for (const KernelTime& kernel : opencl->kernel_times()) result.device_seconds += kernel.seconds;
+            if (scenes::OpenClCloth* device = scenes::on_device(simulation.filter()))
+                for (const KernelTime& kernel : device->kernel_times()) result.device_seconds += kernel.seconds;
         }
         if (!result.breakdown) {
             measure_cloth(simulation.cloth(), frame, conditions, result);

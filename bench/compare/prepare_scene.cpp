@@ -44,6 +44,11 @@ void stiffen_springs(nlohmann::json& document, const std::string& file, double f
     springs["stretch_stiffness"] = factor * springs.value("stretch_stiffness", standard.stretch_stiffness);
 }
 
+bool takes_whole_steps(const nlohmann::json& document) {
+    const auto integrator = document.find("integrator");
+    return integrator != document.end() && integrator->contains("stand_alone");
+}
+
 nlohmann::json value_at(const nlohmann::json& document, const std::string& path) {
     const nlohmann::json* place = &document;
     for (std::size_t first = 0; first < path.size();) {
@@ -61,6 +66,9 @@ nlohmann::json value_at(const nlohmann::json& document, const std::string& path)
 PreparedScene prepare_scene(const ComparedMethod& method, const nlohmann::json& document, const std::string& file,
                             const ParameterValues& parameters) {
     check_parameters(method, parameters);
+    if (method.kind != MethodKind::ours && takes_whole_steps(document))
+        throw InputError(file + ": " + method.name +
+                         ": expected a scene whose integrator is not stand_alone: that is a step of our limiter");
     PreparedScene prepared{.document = document, .parameters = ParameterValues::object()};
     const bool ours = method.kind == MethodKind::ours || method.kind == MethodKind::direct;
     if (ours) {

@@ -22,6 +22,7 @@ except ImportError as missing:
 class Frame:
     number: int  # the number in the file's name, or the place in the index where names carry none
     path: Path
+    time: float  # s, at the end of the frame; NaN where the index gives none
 
 
 @dataclass
@@ -51,14 +52,15 @@ def read_index(folder):
         entries = list(ElementTree.parse(index).iter("DataSet"))
         entries.sort(key=lambda entry: float(entry.get("timestep", "nan")))
         paths = [index.parent / entry.attrib["file"] for entry in entries]
+        times = [float(entry.get("timestep", "nan")) for entry in entries]
     except (ElementTree.ParseError, KeyError, ValueError) as error:
         raise PictureError(f"{index}: not a ParaView collection ({error})") from None
     if not paths:
         raise PictureError(f"{index}: holds no frame")
     numbers = [re.search(r"(\d+)$", path.stem) for path in paths]
     if all(numbers) and len({int(number[1]) for number in numbers}) == len(paths):
-        return [Frame(int(number[1]), path) for number, path in zip(numbers, paths)]
-    return [Frame(place, path) for place, path in enumerate(paths)]
+        return [Frame(int(number[1]), path, time) for number, path, time in zip(numbers, paths, times)]
+    return [Frame(place, path, time) for place, (path, time) in enumerate(zip(paths, times))]
 
 
 def choose_frames(frames, wanted, every=1):

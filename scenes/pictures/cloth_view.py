@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkFeatureEdges, vtkPolyDataNormals, vtkTubeFilter
 from vtkmodules.vtkFiltersSources import vtkLineSource, vtkRegularPolygonSource, vtkSphereSource
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkLight, vtkPolyDataMapper, vtkProperty, vtkRenderer,
@@ -96,11 +97,19 @@ class ClothView:
         self._size = (width, height)
         self._place_camera(camera)
         self._place_lights()
+        self._moving = []
         for collider in colliders:
             actor = collider_actor(collider, camera)
             if actor is not None:
                 self._renderer.AddActor(actor)
+                if "motion" in collider:
+                    self._moving.append((actor, collider))
         self._build_cloth()
+
+    def move_colliders(self, time):
+        """To where their motion has them at `time`, s; where they are at first without a time."""
+        for actor, collider in self._moving:
+            actor.SetUserTransform(carried(collider, 0.0 if np.isnan(time) else time))
 
     def draw(self, surface, colouring=None):
         """A picture of the panel; plain material without a colouring."""
@@ -193,7 +202,7 @@ def collider_actor(collider, camera):
     """The collider of a scene file as something to draw, a little inside its surface: cloth rests on the surface
     with its vertices alone, and the middle of a triangle would be hidden. None for a kind not known here."""
     # Defaults are those of the scene file.
-    (kind, shape), = collider.items()
+    kind, shape = shape_of(collider)
     if kind == "sphere":
         source = sphere(shape.get("center", (0, 0, 0)), INSIDE * shape.get("radius", 0.3))
     elif kind == "capsule":
@@ -208,6 +217,33 @@ def collider_actor(collider, camera):
     actor.SetMapper(mapper)
     actor.SetProperty(material(COLLIDER, ambient=0.25, diffuse=0.75))
     return actor
+
+
+def shape_of(collider):
+    """Kind and values of a collider of a scene file."""
+    (kind, shape), = ((key, value) for key, value in collider.items() if key != "motion")
+    return kind, shape
+
+
+def carried(collider, time):
+    """What the motion of a collider has done to it by `time`, s, as the scene's schema describes it."""
+    motion = collider["motion"]
+    start = motion.get("start", 0.0)
+    seconds = min(max(time, start), motion.get("stop", np.inf)) - start
+    transform = vtkTransform()
+    if "translate" in motion:
+        transform.Translate(*(seconds * np.asarray(motion["translate"].get("velocity", (0, 0, 0)), float)))
+    if "rotate" in motion:
+        rotation = motion["rotate"]
+        kind, shape = shape_of(collider)
+        middle = {"sphere": lambda: shape.get("center", (0, 0, 0)), "plane": lambda: shape.get("point", (0, 0, 0)),
+                  "capsule": lambda: 0.5 * (np.asarray(shape.get("a", (-0.3, 0, 0)), float)
+                                            + np.asarray(shape.get("b", (0.3, 0, 0)), float))}
+        center = np.asarray(rotation.get("center", middle[kind]()), float)
+        transform.Translate(*center)
+        transform.RotateWXYZ(seconds * rotation.get("degrees_per_second", 0.0), *rotation.get("axis", (0, 1, 0)))
+        transform.Translate(*-center)
+    return transform
 
 
 def sphere(center, radius):

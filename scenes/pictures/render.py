@@ -83,6 +83,7 @@ def run(arguments):
         cloth = read_cloth(frame, with_stretch="stretch" in options.views)
         path = out / f"frame_{frame.number:0{digits}}.png"
         page = Image.new("RGB", options.size, PAPER)
+        window.move_colliders(frame.time)
         draw_row(page, 0, page.height, window, cloth, options.views,
                  Red(options.red, options.red_stretch), f"frame {frame.number}")
         save_png(page, path)

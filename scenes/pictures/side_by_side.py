@@ -56,6 +56,7 @@ def run(arguments):
     window = ClothView(*panel, camera, colliders)
     page = Image.new("RGB", (row[0], 2 * row[1]), PAPER)
     for place, (cloth, frame, title) in enumerate(zip(cloths, frames, options.titles)):
+        window.move_colliders(frame.time)
         draw_row(page, place * row[1], row[1], window, cloth, USUAL_VIEWS,
                  Red(options.red, options.red_stretch), f"{title}, frame {frame.number}")
     save_png(page, options.out, options.max_bytes)

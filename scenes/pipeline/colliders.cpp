@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/colliders.hpp"
 
-#include "pipeline/geometry.hpp"
+#include "pipeline/surface.hpp"
 
 #include <apsl/error.hpp>
 
@@ -21,63 +21,13 @@ using Vector = Eigen::Vector3d;
 constexpr int max_rounds = 128;
 // m. From the second round on, less than this counts as on the surface: a push leaves rounding errors behind.
 constexpr double slack = 1e-10;
-// m. What begins a step deeper inside than this began the simulation there.
-constexpr double start_depth = 1e-4;
-// s. In this time all but 1/e of the depth is gone.
-constexpr double time_to_leave = 0.2;
-
-struct Surface {
-    double distance;  ///< m, negative inside
-    Vector normal;    ///< unit, pointing out
-};
-
-// A unit vector across `axis` (unit, or zero for a sphere) for a place that lies on the axis itself: back to where the
-// vertex came from, or else up, or else sideways.
-Vector any_way_out(const Vector& axis, const Vector& back) {
-    for (const Vector& candidate : {back, Vector(Vector::UnitY()), Vector(Vector::UnitX())}) {
-        const Vector across = candidate - axis.dot(candidate) * axis;
-        if (across.norm() > 1e-6 * candidate.norm()) return across.normalized();
-    }
-    return Vector::UnitX();
-}
-
-Surface surface(const Sphere& sphere, const Vector& place, const Vector& start) {
-    const Vector center(sphere.center.data());
-    const Vector offset = place - center;
-    const double length = offset.norm();
-    return {.distance = length - sphere.radius,
-            .normal = length > 0.0 ? Vector(offset / length) : any_way_out(Vector::Zero(), start - center)};
-}
-
-Surface surface(const Plane& plane, const Vector& place, const Vector& /*start*/) {
-    const Vector normal = Vector(plane.normal.data()).stableNormalized();
-    return {.distance = normal.dot(place - Vector(plane.point.data())), .normal = normal};
-}
-
-Surface surface(const Capsule& capsule, const Vector& place, const Vector& start) {
-    const Vector a(capsule.a.data());
-    const Vector axis = Vector(capsule.b.data()) - a;
-    const double squared_length = axis.squaredNorm();
-    const double along = squared_length > 0.0 ? std::clamp(axis.dot(place - a) / squared_length, 0.0, 1.0) : 0.0;
-    const Vector closest = a + along * axis;
-    const Vector offset = place - closest;
-    const double length = offset.norm();
-    return {.distance = length - capsule.radius,
-            .normal = length > 0.0 ? Vector(offset / length) : any_way_out(axis.stableNormalized(), start - closest)};
-}
-
-Surface surface(const Collider& collider, const Vector& place, const Vector& start) {
-    return std::visit([&](const auto& shape) { return surface(shape, place, start); }, collider);
-}
-
-const Contact& contact_of(const Collider& collider) {
-    return std::visit([](const auto& shape) -> const Contact& { return shape.contact; }, collider);
-}
 
 // Moves a vertex that begins the step inside a part of its way out. Returns how deep it may still be, m.
-double lead_out_of(const Collider& collider, Eigen::Map<Vector> position, double time_step) {
-    const auto [distance, normal] = surface(collider, position, position);
-    const double depth = contact_of(collider).thickness - distance;
+double lead_out_of(const ColliderStep& collider, Eigen::Map<Vector> position, double time_step) {
+    // Carried along with the collider.
+    const Vector place = position + time_step * velocity_at(collider, position);
+    const auto [distance, normal] = surface(collider.shape, place, place);
+    const double depth = contact_of(collider.shape).thickness - distance;
     if (!(depth > start_depth)) return 0.0;
     const double way = std::min(1.0, time_step / time_to_leave) * depth;
     position += way * normal;
@@ -85,21 +35,50 @@ double lead_out_of(const Collider& collider, Eigen::Map<Vector> position, double
 }
 
 // Pushes the predicted place of one vertex out of one collider, up to the depth it may have; whether it had to.
-bool push_out(const Collider& collider, const Vector& position, Eigen::Map<Vector> velocity, double time_step,
+bool push_out(const ColliderStep& collider, const Vector& position, Eigen::Map<Vector> velocity, double time_step,
               double allowed_depth, double ignored_depth) {
     const Vector place = position + time_step * velocity;
-    const auto [distance, normal] = surface(collider, place, position);
-    const Contact& contact = contact_of(collider);
+    const auto [distance, normal] = surface(collider.shape, place, position);
+    const Contact& contact = contact_of(collider.shape);
     const double depth = contact.thickness - allowed_depth - distance;
     if (!(depth > ignored_depth)) return false;
     const double push = depth / time_step;
     velocity += push * normal;
     // Coulomb: the tangential impulse is at most μ times the normal one, and never turns the motion round.
-    const double normal_speed = velocity.dot(normal);
-    const Vector tangential = velocity - normal_speed * normal;
+    const Vector sliding = velocity - velocity_at(collider, place + depth * normal);
+    const Vector tangential = sliding - sliding.dot(normal) * normal;
     const double speed = tangential.norm();
     if (contact.friction > 0.0 && speed > 0.0) velocity -= std::min(1.0, contact.friction * push / speed) * tangential;
     return true;
+}
+
+std::array<double, 3> middle_of(const Collider& collider) {
+    if (const auto* sphere = std::get_if<Sphere>(&collider)) return sphere->center;
+    if (const auto* plane = std::get_if<Plane>(&collider)) return plane->point;
+    const auto& [a, b, radius, contact] = std::get<Capsule>(collider);
+    return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+}
+
+Collider carry(Sphere sphere, const Motion& motion, double seconds) {
+    sphere.center = carried(motion, sphere.center, seconds);
+    return sphere;
+}
+
+Collider carry(Plane plane, const Motion& motion, double seconds) {
+    if (std::holds_alternative<Rotation>(motion.path)) {
+        // About an axis through the origin.
+        Motion turning = motion;
+        std::get<Rotation>(turning.path).center = std::array<double, 3>{};
+        plane.normal = carried(turning, plane.normal, seconds);
+    }
+    plane.point = carried(motion, plane.point, seconds);
+    return plane;
+}
+
+Collider carry(Capsule capsule, const Motion& motion, double seconds) {
+    capsule.a = carried(motion, capsule.a, seconds);
+    capsule.b = carried(motion, capsule.b, seconds);
+    return capsule;
 }
 
 [[noreturn]] void fail(const std::string& what) {
@@ -142,6 +121,29 @@ void check_contact(const Contact& contact) {
 
 }  // namespace
 
+ColliderStep collider_step(const MovingCollider& collider, double time, double time_step) {
+    Motion motion = collider.motion;
+    if (auto* rotation = std::get_if<Rotation>(&motion.path))
+        rotation->center = rotation->center.value_or(middle_of(collider.shape));
+    const double before = seconds_in_motion(motion, time), after = seconds_in_motion(motion, time + time_step);
+    ColliderStep step{.shape =
+                          std::visit([&](const auto& shape) { return carry(shape, motion, after); }, collider.shape)};
+    if (after == before) return step;
+    // What turns and shifts is affine: known from what it does to the origin and to the three axes.
+    const auto velocity = [&](const std::array<double, 3>& place) {
+        return Vector((Vector(place.data()) - Vector(carried(motion, place, before - after).data())) / time_step);
+    };
+    const Vector drift = velocity({});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::array<double, 3> unit{};
+        unit[axis] = 1.0;
+        const Vector column = velocity(unit) - drift;
+        for (std::size_t row = 0; row < 3; ++row) step.turning[3 * row + axis] = column[static_cast<Eigen::Index>(row)];
+        step.drift[axis] = drift[static_cast<Eigen::Index>(axis)];
+    }
+    return step;
+}
+
 void validate(const Collider& collider) {
     std::visit(
         [](const auto& shape) {
@@ -166,7 +168,7 @@ StartInside start_inside(const ClothState& cloth, const Collider& collider) {
     return inside;
 }
 
-std::size_t resolve_collisions(ClothState& cloth, std::span<const Collider> colliders, double time_step,
+std::size_t resolve_collisions(ClothState& cloth, std::span<const ColliderStep> colliders, double time_step,
                                bool lead_out) {
     if (!(time_step > 0.0)) {
         throw Error(ErrorCode::invalid_argument,

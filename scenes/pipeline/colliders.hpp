@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/cloth_state.hpp"
+#include "pipeline/motion.hpp"
 
 #include <array>
 #include <cstddef>
@@ -39,6 +40,24 @@ struct Capsule {
 
 using Collider = std::variant<Sphere, Plane, Capsule>;
 
+/// A rotation without a center turns about the sphere's center, the middle of the capsule's axis, the plane's point.
+struct MovingCollider {
+    Collider shape;  ///< where it is at first
+    Motion motion{};
+};
+
+/// A collider in a time step.
+struct ColliderStep {
+    Collider shape;  ///< where it is at the end
+    /// What the step moves the body by, over its length: what is at p (m) at the end has come there with the velocity
+    /// turning p + drift, which is a chord where it turns. `turning` 1/s, row by row, `drift` m/s.
+    std::array<double, 9> turning{};
+    std::array<double, 3> drift{};
+};
+
+/// The step from `time` (s) on.
+ColliderStep collider_step(const MovingCollider& collider, double time, double time_step);
+
 /// Throws Error(invalid_argument) naming the field that is out of range or not finite.
 void validate(const Collider& collider);
 
@@ -51,13 +70,13 @@ struct StartInside {
 StartInside start_inside(const ClothState& cloth, const Collider& collider);
 
 /// Collision response on velocities, vertex by vertex, after the filter: where x + Δt v lies inside a collider, v is
-/// changed so that it lies on the surface, and friction takes up to μ times that change off the tangential velocity.
-/// Only the end of the step is looked at: what crosses a collider whole within one step is not seen. Pinned vertices
-/// are left alone. Colliders stand still and are not checked here (see validate).
-/// `lead_out`: for cloth that starts inside, which would leave at depth / Δt and keep that speed. Then its position is
-/// moved towards the surface by a part of its depth, and its velocity changed only so that it comes no deeper again.
-/// Returns the number of vertices whose velocity was changed. Throws Error(invalid_argument) unless time_step > 0.
-std::size_t resolve_collisions(ClothState& cloth, std::span<const Collider> colliders, double time_step,
+/// changed so that it lies on the surface, and friction takes up to μ times that change off the tangential velocity
+/// relative to the collider. Only the end of the step is looked at: what crosses a collider whole within one step is
+/// not seen. Pinned vertices are left alone. Colliders are not checked here (see validate). `lead_out`: for cloth that
+/// starts inside, which would leave at depth / Δt and keep that speed. Then its position is moved towards the surface
+/// by a part of its depth, and its velocity changed only so that it comes no deeper again. Returns the number of
+/// vertices whose velocity was changed. Throws Error(invalid_argument) unless time_step > 0.
+std::size_t resolve_collisions(ClothState& cloth, std::span<const ColliderStep> colliders, double time_step,
                                bool lead_out = false);
 
 }  // namespace apsl::scenes

@@ -2,39 +2,17 @@
 #pragma once
 
 #include "pipeline/cloth_state.hpp"
+#include "pipeline/motion.hpp"
 
-#include <array>
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <span>
-#include <variant>
 #include <vector>
 
 namespace apsl::scenes {
 
-struct PinHeld {};
-
-struct PinTranslation {
-    std::array<double, 3> velocity{};  ///< m/s
-};
-
-struct PinRotation {
-    std::array<double, 3> axis{0.0, 1.0, 0.0};  ///< any length but zero; turns by the right-hand rule
-    double degrees_per_second = 0.0;            ///< degree/s
-    /// m, a point of the axis; none: centroid of the group's rest positions.
-    std::optional<std::array<double, 3>> center{};
-};
-
-struct PinMotion {
-    std::variant<PinHeld, PinTranslation, PinRotation> path;
-    double start = 0.0;                                     ///< s, at rest before
-    double stop = std::numeric_limits<double>::infinity();  ///< s, at rest after, ≥ start
-};
-
 struct PinGroup {
     std::vector<std::uint32_t> vertices;
-    PinMotion motion;
+    Motion motion;  ///< a rotation without a center turns about the centroid of the group's rest positions
 };
 
 /// The vertices of all groups, ascending, each once: what make_cloth_state wants.

@@ -48,7 +48,7 @@ std::optional<std::size_t> as_index(const std::string& key) {
 template <class Json>
 void replace_other_kinds(Json& document, const std::vector<std::string>& path) {
     const std::vector<std::string> meshes{"grid", "tube", "file"};
-    const std::vector<std::string> integrators{"implicit_springs", "stand_alone", "none"};
+    const std::vector<std::string> integrators{"implicit_springs", "bending_springs", "stand_alone", "none"};
     if (path.size() < 2 || !document.contains(path[0]) || !document[path[0]].is_object()) return;
     const std::vector<std::string>& kinds = path[0] == "mesh" ? meshes : integrators;
     if (path[0] != "mesh" && path[0] != "integrator") return;

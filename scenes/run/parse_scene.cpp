@@ -107,7 +107,7 @@ Start parse_start(SceneObject object) {
 }
 
 Integrator parse_integrator(SceneObject object) {
-    const std::string kind = object.only_one_of({"implicit_springs", "stand_alone", "none"});
+    const std::string kind = object.only_one_of({"implicit_springs", "bending_springs", "stand_alone", "none"});
     SceneObject settings(object.find(kind));
     Integrator integrator;
     if (kind == "implicit_springs") {
@@ -117,11 +117,21 @@ Integrator parse_integrator(SceneObject object) {
         springs.bend_stiffness = settings.number("bend_stiffness", springs.bend_stiffness, Range::at_least(0.0));
         springs.damping = settings.number("damping", springs.damping, Range::at_least(0.0));
         integrator = springs;
-    } else if (kind == "stand_alone") {
-        StandAloneIntegrator springs;
+    } else if (kind == "bending_springs") {
+        BendingSpringsIntegrator springs;
         springs.bend_stiffness = settings.number("bend_stiffness", springs.bend_stiffness, Range::at_least(0.0));
         springs.damping = settings.number("damping", springs.damping, Range::at_least(0.0));
         integrator = springs;
+    } else if (kind == "stand_alone") {
+        StandAloneIntegrator stand_alone;
+        stand_alone.damping = settings.number("damping", stand_alone.damping, Range::at_least(0.0));
+        // What it had before, and no key of it now.
+        if (settings.value().json->contains("bend_stiffness"))
+            SceneObject(settings.value())
+                .find("bend_stiffness")
+                .fail(
+                    "a stand-alone cloth has no springs, those in front of the filter are integrator.bending_springs");
+        integrator = stand_alone;
     }
     settings.refuse_other_keys();
     return integrator;
@@ -197,6 +207,24 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     return settings;
 }
 
+// Options and parameters of whole steps.
+void make_stand_alone(Scene& scene, const SceneValue& integrator) {
+    const auto* stand_alone = std::get_if<StandAloneIntegrator>(&scene.integrator);
+    if (stand_alone == nullptr) return;
+    if (!scene.strain_limiting)
+        integrator.fail("stand_alone is a step of the limiter, expected strain_limiting beside it");
+    StrainLimiting& limiting = *scene.strain_limiting;
+    limiting.options.integrates = true;
+    limiting.options.keeps_contacts = !scene.colliders.empty();
+    for (std::size_t k = 0; k < 3; ++k) limiting.parameters.acceleration[k] = static_cast<float>(scene.gravity[k]);
+    limiting.parameters.damping = static_cast<float>(stand_alone->damping);
+    try {
+        validate(limiting.options, limiting.parameters);
+    } catch (const Error& error) {
+        integrator.fail(std::string("stand_alone: ") + error.what());
+    }
+}
+
 Contact parse_contact(SceneObject& object) {
     Contact contact;
     contact.friction = object.number("friction", contact.friction, Range::at_least(0.0));
@@ -204,7 +232,9 @@ Contact parse_contact(SceneObject& object) {
     return contact;
 }
 
-Collider parse_collider(SceneObject object) {
+MovingCollider parse_collider(SceneObject object) {
+    MovingCollider moving;
+    if (object.has("motion")) moving.motion = parse_motion(SceneObject(object.find("motion")));
     const std::string kind = object.only_one_of({"sphere", "plane", "capsule"});
     SceneObject shape(object.find(kind));
     Collider collider;
@@ -234,7 +264,8 @@ Collider parse_collider(SceneObject object) {
     } catch (const Error& error) {
         shape.value().fail(error.what());
     }
-    return collider;
+    moving.shape = collider;
+    return moving;
 }
 
 }  // namespace
@@ -263,6 +294,7 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     if (object.has("colliders"))
         for (const SceneValue& collider : object.find("colliders").entries())
             scene.colliders.push_back(parse_collider(SceneObject(collider)));
+    make_stand_alone(scene, object.find("integrator"));
     object.refuse_other_keys();
     return scene;
 }

@@ -9,25 +9,29 @@ namespace {
 
 constexpr std::int64_t max_index = std::numeric_limits<std::int32_t>::max();
 
-PinMotion parse_motion(SceneObject object) {
-    PinMotion motion;
+}  // namespace
+
+Motion parse_motion(SceneObject object) {
+    Motion motion;
     motion.start = object.number("start", motion.start, Range::at_least(0.0));
     motion.stop = object.number("stop", motion.stop, Range::at_least(motion.start));
     const std::string kind = object.only_one_of({"rotate", "translate"});
     SceneObject path(object.find(kind));
     if (kind == "rotate") {
-        PinRotation rotation;
+        Rotation rotation;
         rotation.axis = path.vector3("axis", rotation.axis);
         rotation.degrees_per_second = path.number("degrees_per_second", rotation.degrees_per_second);
         if (path.has("center")) rotation.center = path.vector3("center", {});
         if (rotation.axis == std::array<double, 3>{}) path.find("axis").fail("expected an axis of any length but 0");
         motion.path = rotation;
     } else {
-        motion.path = PinTranslation{path.vector3("velocity", {})};
+        motion.path = Translation{path.vector3("velocity", {})};
     }
     path.refuse_other_keys();
     return motion;
 }
+
+namespace {
 
 // Keys that may stand beside the selection have been asked for before.
 VertexSelection parse_selection(SceneObject& object) {

@@ -7,7 +7,8 @@
 namespace apsl::scenes {
 
 /// Parts of a scene that select vertices, as parse_scene wants them: an entry of `pins`, an entry of `masses`.
-/// Both throw InputError as it does.
+/// The motion of a pin or a collider. All throw InputError as it does.
+Motion parse_motion(SceneObject object);
 Pin parse_pin(SceneObject object);
 MassFactor parse_mass_factor(SceneObject object);
 

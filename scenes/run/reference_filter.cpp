@@ -13,14 +13,16 @@ ReferenceFilter::ReferenceFilter(const ClothState& cloth, const StrainLimiting& 
     if (settings.options.limits_stretch) rest_shapes_ = rest_shapes(cloth);
 }
 
-Stats ReferenceFilter::filter(ClothState& cloth) {
+Stats ReferenceFilter::call(ClothState& cloth, std::span<double> end_positions, std::span<const double> contacts) {
     limiter_.enqueue({.positions = cloth.positions,
                       .velocities = cloth.velocities,
                       .inverse_masses = cloth.inverse_masses,
                       .rest_areas = cloth.rest_areas,
                       .regularization = regularization_,
                       .rest_shapes = rest_shapes_,
-                      .stretch_ceilings = stretch_ceilings_},
+                      .stretch_ceilings = stretch_ceilings_,
+                      .contacts = contacts,
+                      .end_positions = end_positions},
                      parameters_);
     return limiter_.read_stats();
 }

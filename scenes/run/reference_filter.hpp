@@ -7,6 +7,7 @@
 #include <apsl/reference.hpp>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,12 @@ public:
     ReferenceFilter(const ClothState& cloth, const StrainLimiting& settings);
 
     /// Filters the cloth's velocities.
-    Stats filter(ClothState& cloth);
+    Stats filter(ClothState& cloth) { return call(cloth, {}, {}); }
+    /// A call, with positions at the end of the step where it is a whole one: m, [3V], or none, and with contacts,
+    /// [8V], where it keeps them.
+    Stats call(ClothState& cloth, std::span<double> end_positions, std::span<const double> contacts);
 
-    std::string device_name() const { return "this processor, one thread, double precision"; }
-    std::size_t device_bytes() const { return 0; }
+    static std::string device_name() { return "this processor, one thread, double precision"; }
 
 private:
     Parameters parameters_;

@@ -44,10 +44,14 @@ nlohmann::ordered_json to_json(const FrameReport& frame) {
                                 {"energy", to_json(frame.energy)},
                                 {"sub_steps", frame.sub_steps},
                                 {"iterations", frame.iterations},
+                                {"pin_seconds", frame.pin_seconds},
                                 {"integrator_seconds", frame.integrator_seconds},
                                 {"filter_seconds", frame.filter_seconds},
                                 {"collision_seconds", frame.collision_seconds},
                                 {"step_seconds", frame.step_seconds},
+                                {"read_back_seconds", frame.read_back_seconds},
+                                {"measuring_seconds", frame.measuring_seconds},
+                                {"writing_seconds", frame.writing_seconds},
                                 {"status", status_name(frame.status)}};
     add_filter_notes(frame, json);
     return json;
@@ -62,10 +66,14 @@ nlohmann::ordered_json to_json(const RunSummary& summary) {
                                 {"max_principal_stretch", summary.max_principal_stretch},
                                 {"solves", summary.solves},
                                 {"iterations_per_solve", summary.iterations_per_solve},
+                                {"pin_seconds_per_frame", summary.pin_seconds_per_frame},
                                 {"integrator_seconds_per_frame", summary.integrator_seconds_per_frame},
                                 {"filter_seconds_per_frame", summary.filter_seconds_per_frame},
                                 {"collision_seconds_per_frame", summary.collision_seconds_per_frame},
                                 {"step_seconds_per_frame", summary.step_seconds_per_frame},
+                                {"read_back_seconds_per_frame", summary.read_back_seconds_per_frame},
+                                {"measuring_seconds_per_frame", summary.measuring_seconds_per_frame},
+                                {"writing_seconds_per_frame", summary.writing_seconds_per_frame},
                                 {"status", status_name(summary.status)}};
     add_filter_notes(summary, json);
     return json;
@@ -120,10 +128,14 @@ RunSummary summarize(const std::vector<FrameReport>& frames) {
     summary.rms_area_change = std::sqrt(squares / static_cast<double>(frames.size()));
     if (summary.solves > 0)
         summary.iterations_per_solve = static_cast<double>(iterations) / static_cast<double>(summary.solves);
+    summary.pin_seconds_per_frame = median(frames, &FrameReport::pin_seconds);
     summary.integrator_seconds_per_frame = median(frames, &FrameReport::integrator_seconds);
     summary.filter_seconds_per_frame = median(frames, &FrameReport::filter_seconds);
     summary.collision_seconds_per_frame = median(frames, &FrameReport::collision_seconds);
     summary.step_seconds_per_frame = median(frames, &FrameReport::step_seconds);
+    summary.read_back_seconds_per_frame = median(frames, &FrameReport::read_back_seconds);
+    summary.measuring_seconds_per_frame = median(frames, &FrameReport::measuring_seconds);
+    summary.writing_seconds_per_frame = median(frames, &FrameReport::writing_seconds);
     return summary;
 }
 

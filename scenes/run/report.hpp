@@ -31,6 +31,7 @@ struct WorsenedTriangle {
 
 /// One frame: the greatest over its steps, sums for counts and seconds, the worst status. Area change is
 /// |A − A⁰| / A⁰ at x + Δt v, after the filter and before collision response; edges are measured at the end of a step.
+/// Of a stand-alone cloth area change is that of the steps' ends, and edges are measured at the end of the frame alone.
 struct FrameReport {
     int frame = 0;
     double max_area_change = 0.0;
@@ -42,10 +43,14 @@ struct FrameReport {
     Energy energy;           ///< at the end of the frame
     std::int64_t sub_steps = 0;
     std::int64_t iterations = 0;
+    double pin_seconds = 0.0;  ///< moving pins; of a stand-alone cloth with the transfer of their places to the device
     double integrator_seconds = 0.0;
-    double filter_seconds = 0.0;  ///< with the transfers to and from the device
+    double filter_seconds = 0.0;  ///< with the transfers to and from the device; the calls of a stand-alone cloth
     double collision_seconds = 0.0;
-    double step_seconds = 0.0;  ///< all of the steps, without measuring and writing
+    double step_seconds = 0.0;       ///< all of the steps, without what follows
+    double read_back_seconds = 0.0;  ///< a stand-alone cloth from the device, to be measured and written
+    double measuring_seconds = 0.0;
+    double writing_seconds = 0.0;
     Status status = Status::ok;
     std::uint32_t raised_vertices = 0;         ///< that weighed more than given, because the tension needs it
     double greatest_mass_ratio = 1.0;          ///< their greatest mass over the one given
@@ -89,6 +94,7 @@ struct RunReport {
     Pieces pieces;
     LightVertices light;
     CapTriangles caps;
+    bool stand_alone = false;         ///< the limiter takes whole steps
     bool limits_stretch = false;      ///< then masses are raised as a matter of course
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step
     std::size_t device_bytes = 0;
@@ -110,10 +116,14 @@ struct RunSummary {
     double max_principal_stretch = 1.0;
     std::int64_t solves = 0;
     double iterations_per_solve = 0.0;
+    double pin_seconds_per_frame = 0.0;
     double integrator_seconds_per_frame = 0.0;
     double filter_seconds_per_frame = 0.0;
     double collision_seconds_per_frame = 0.0;
     double step_seconds_per_frame = 0.0;
+    double read_back_seconds_per_frame = 0.0;
+    double measuring_seconds_per_frame = 0.0;
+    double writing_seconds_per_frame = 0.0;
     Status status = Status::ok;
     std::uint32_t raised_vertices = 0;
     double greatest_mass_ratio = 1.0;

@@ -7,6 +7,7 @@
 #include "run/parse_scene.hpp"
 #include "run/progress.hpp"
 #include "run/simulation.hpp"
+#include "run/stopwatch.hpp"
 #include "run/summary.hpp"
 #include "run/whole_file.hpp"
 
@@ -32,6 +33,11 @@ void write_report(const std::filesystem::path& file, const nlohmann::ordered_jso
 void add_settings_warning(const Scene& scene, std::vector<std::string>& warnings) {
     if (!scene.strain_limiting) return;
     const StrainLimiting& settings = *scene.strain_limiting;
+    if (settings.options.integrates && !settings.options.limits_stretch) {
+        warnings.push_back(scene.file +
+                           ": integrator.stand_alone: areas alone do not hold a cloth together, which flows; give "
+                           "strain_limiting a stretch_ceiling, 1.1 suits most");
+    }
     if (settings.options.matrix == Matrix::printed && settings.regularization.empty() &&
         settings.parameters.regularization < 2.0f) {
         warnings.push_back(
@@ -62,13 +68,13 @@ RunReport describe(const RunOptions& options, Simulation& simulation) {
     report.scene = options.scene.string();
     report.backend = "none";
     report.device = "none";
-    if (const auto* opencl = std::get_if<OpenClFilter>(&simulation.filter())) {
+    if (const OpenClCloth* device = on_device(simulation.filter())) {
         report.backend = "opencl";
-        report.device = opencl->device_name();
-        report.device_bytes = opencl->device_bytes();
-    } else if (const auto* reference = std::get_if<ReferenceFilter>(&simulation.filter())) {
+        report.device = device->device_name();
+        report.device_bytes = device->device_bytes();
+    } else if (!std::holds_alternative<std::monostate>(simulation.filter())) {
         report.backend = "reference";
-        report.device = reference->device_name();
+        report.device = ReferenceFilter::device_name();
     }
     report.vertices = simulation.cloth().topology->vertex_count();
     report.triangles = simulation.cloth().topology->triangle_count();
@@ -87,14 +93,18 @@ bool simulate(Simulation& simulation, int frames, std::optional<FrameOutput>& ou
             report.breakdown = simulation.breakdown();
             return false;
         }
-        if (output) output->add_frame(simulation.cloth(), simulation.area_changes());
+        if (output) {
+            const Stopwatch writing;
+            output->add_frame(simulation.cloth(), simulation.area_changes());
+            report.frames.back().writing_seconds = writing.seconds();
+        }
         progress.show(report.frames.back());
     }
     return static_cast<int>(report.frames.size()) == frames;
 }
 
-void add_kernel_times(OpenClFilter& filter, RunReport& report) {
-    for (KernelTime& kernel : filter.kernel_times())
+void add_kernel_times(OpenClCloth& device, RunReport& report) {
+    for (KernelTime& kernel : device.kernel_times())
         report.kernels.push_back({std::move(kernel.name), kernel.launches, kernel.seconds});
 }
 
@@ -125,6 +135,7 @@ int run_command(const RunOptions& options) {
     report.pieces = pieces;
     report.light = light;
     report.caps = caps;
+    report.stand_alone = scene.strain_limiting && scene.strain_limiting->options.integrates;
     report.limits_stretch = scene.strain_limiting && scene.strain_limiting->options.limits_stretch;
     const bool complete = simulate(simulation, scene.frames, output, report);
     if (!complete && !report.breakdown) {
@@ -132,8 +143,8 @@ int run_command(const RunOptions& options) {
                      scene.frames);
         return exit_interrupted;
     }
-    if (auto* opencl = std::get_if<OpenClFilter>(&simulation.filter()); opencl != nullptr && options.profile)
-        add_kernel_times(*opencl, report);
+    if (OpenClCloth* on = on_device(simulation.filter()); on != nullptr && options.profile)
+        add_kernel_times(*on, report);
 
     report.over_stretch = describe(simulation.over_stretch(), simulation.cloth(), report.limits_stretch);
     const std::vector<std::string> late = late_warnings(simulation, report);

@@ -44,7 +44,7 @@ using VertexSelection = std::variant<SelectedVertices, SelectedCorners, Selected
 /// Which vertices are pinned and how they move.
 struct Pin {
     VertexSelection selection;
-    PinMotion motion;
+    Motion motion;
 };
 
 /// Vertices heavier or lighter than their triangles make them.
@@ -72,12 +72,19 @@ struct ImplicitSpringsIntegrator {
 };
 
 /// Section 6 of the paper: bending springs, and the filter holds the rest (pipeline/springs.hpp).
-struct StandAloneIntegrator {
+struct BendingSpringsIntegrator {
     double bend_stiffness = 200.0;  ///< N/m, ≥ 0
     double damping = 0.5;           ///< 1/s, ≥ 0
 };
 
-using Integrator = std::variant<NoIntegrator, ImplicitSpringsIntegrator, StandAloneIntegrator>;
+/// The limiter takes whole steps, with nothing in front of it: StrainLimiting::options integrates then, with gravity
+/// and this damping among its parameters, and keeps contacts where there are colliders.
+struct StandAloneIntegrator {
+    double damping = 0.5;  ///< 1/s, ≥ 0
+};
+
+using Integrator =
+    std::variant<NoIntegrator, ImplicitSpringsIntegrator, BendingSpringsIntegrator, StandAloneIntegrator>;
 
 struct StrainLimiting {
     Options options;
@@ -102,7 +109,7 @@ struct Scene {
     int frames = 180;                                ///< ≥ 1
     Integrator integrator;
     std::optional<StrainLimiting> strain_limiting;
-    std::vector<Collider> colliders;
+    std::vector<MovingCollider> colliders;
 };
 
 }  // namespace apsl::scenes

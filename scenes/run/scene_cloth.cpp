@@ -58,7 +58,7 @@ void note_topology(const Topology& topology, const std::string& name, std::vecto
 
 void note_start_inside(const Scene& scene, const ClothState& cloth, std::vector<std::string>& warnings) {
     for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
-        const StartInside inside = start_inside(cloth, scene.colliders[k]);
+        const StartInside inside = start_inside(cloth, scene.colliders[k].shape);
         if (inside.vertices == 0) continue;
         warnings.push_back(scene.file + ": colliders[" + std::to_string(k) +
                            "]: vertices that start inside: " + std::to_string(inside.vertices) + ", by up to " +

@@ -22,12 +22,16 @@ SceneSprings springs_of(const ImplicitSpringsIntegrator& implicit, const Scene&,
     return made;
 }
 
-SceneSprings springs_of(const StandAloneIntegrator& stand_alone, const Scene& scene, const ClothState& cloth) {
-    StandAloneSprings springs = stand_alone_springs(*cloth.topology, cloth.rest_positions, stand_alone.bend_stiffness);
-    SceneSprings made{.springs = {}, .damping = stand_alone.damping, .warnings = {}};
+SceneSprings springs_of(const StandAloneIntegrator&, const Scene&, const ClothState&) {
+    return {};
+}
+
+SceneSprings springs_of(const BendingSpringsIntegrator& bending, const Scene& scene, const ClothState& cloth) {
+    StandAloneSprings springs = stand_alone_springs(*cloth.topology, cloth.rest_positions, bending.bend_stiffness);
+    SceneSprings made{.springs = {}, .damping = bending.damping, .warnings = {}};
     if (const std::size_t added = springs.between_lattices + springs.connecting; added > 0) {
         made.warnings.push_back(
-            scene.file + ": integrator.stand_alone: bending springs left the cloth in " +
+            scene.file + ": integrator.bending_springs: bending springs left the cloth in " +
             std::to_string(springs.lattices) + " lattices that only areas join; " + std::to_string(added) +
             " springs between them were added, an irregular mesh (a grid with random diagonals) needs none");
     }

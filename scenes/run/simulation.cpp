@@ -4,22 +4,14 @@
 #include "pipeline/advance.hpp"
 #include "pipeline/measures.hpp"
 #include "run/scene_springs.hpp"
+#include "run/stopwatch.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 namespace apsl::scenes {
 namespace {
-
-class Stopwatch {
-public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Where it went wrong first, for the report.
 std::optional<std::size_t> first_not_finite(const std::vector<double>& values) {
@@ -32,6 +24,13 @@ std::string first_offender(const Stats& stats) {
     if (stats.offender == Offender::none) return {};
     const char* what = stats.offender == Offender::vertex ? "vertex " : "triangle ";
     return ", first at " + (what + std::to_string(stats.offender_index));
+}
+
+// Of one step.
+void note(const AreaChange& change, FrameReport& report) {
+    report.max_area_change = std::max(report.max_area_change, change.max);
+    // Sum of squares until the frame is complete.
+    report.rms_area_change += change.rms * change.rms;
 }
 
 // Of one call of the filter.
@@ -60,18 +59,33 @@ Simulation::Simulation(const Scene& scene, SceneCloth cloth, FilterStage filter,
       keep_area_changes_(keep_area_changes) {
     Pins pins(cloth_, std::move(cloth.pins));
     if (pins.moving()) moving_pins_ = std::move(pins);
-    starts_inside_ = is_inside();
+    for (const MovingCollider& collider : colliders_)
+        starts_inside_ = starts_inside_ || start_inside(cloth_, collider.shape).vertices > 0;
     make_springs(scene);
     name_stages(scene);
 }
 
-bool Simulation::is_inside() const {
-    return std::any_of(colliders_.begin(), colliders_.end(),
-                       [&](const Collider& collider) { return start_inside(cloth_, collider).vertices > 0; });
+bool Simulation::is_inside(std::span<const ColliderStep> colliders) const {
+    return std::any_of(colliders.begin(), colliders.end(),
+                       [&](const ColliderStep& collider) { return start_inside(cloth_, collider.shape).vertices > 0; });
+}
+
+// s
+double Simulation::start_of(int step) const {
+    return (static_cast<double>(frame_) * steps_per_frame_ + step) * time_step_;
+}
+
+std::vector<ColliderStep> Simulation::collider_steps(int step) const {
+    std::vector<ColliderStep> steps;
+    for (const MovingCollider& collider : colliders_)
+        steps.push_back(collider_step(collider, start_of(step), time_step_));
+    return steps;
 }
 
 void Simulation::make_springs(const Scene& scene) {
-    if (std::holds_alternative<NoIntegrator>(scene.integrator)) return;
+    if (std::holds_alternative<NoIntegrator>(scene.integrator) ||
+        std::holds_alternative<StandAloneIntegrator>(scene.integrator))
+        return;
     SceneSprings made = make_scene_springs(scene, cloth_);
     warnings_ = std::move(made.warnings);
     springs_.emplace(cloth_, std::move(made.springs), made.damping);
@@ -80,11 +94,11 @@ void Simulation::make_springs(const Scene& scene) {
 void Simulation::name_stages(const Scene& scene) {
     if (moving_pins_) stages_.emplace_back("pin_motion");
     if (std::holds_alternative<ImplicitSpringsIntegrator>(scene.integrator)) stages_.emplace_back("implicit_springs");
-    if (std::holds_alternative<StandAloneIntegrator>(scene.integrator)) stages_.emplace_back("stand_alone");
+    if (std::holds_alternative<BendingSpringsIntegrator>(scene.integrator)) stages_.emplace_back("bending_springs");
     if (const auto* custom = std::get_if<CustomFilter>(&filter_))
         stages_.push_back(custom->name);
     else if (scene.strain_limiting)
-        stages_.emplace_back("strain_limiting");
+        stages_.emplace_back(scene.strain_limiting->options.integrates ? "stand_alone" : "strain_limiting");
     if (!scene.colliders.empty()) stages_.emplace_back("colliders");
 }
 
@@ -111,21 +125,32 @@ void Simulation::measure_areas(FrameReport& report, const std::optional<Stats>& 
         if (!stats) change = summarize(cloth_, area_changes_);
     }
     if (stats) change = {stats->max_area_change, stats->rms_area_change};
-    report.max_area_change = std::max(report.max_area_change, change.max);
-    // Sum of squares until the frame is complete.
-    report.rms_area_change += change.rms * change.rms;
+    note(change, report);
+}
+
+void Simulation::measure_stretches(FrameReport& report) {
+    const EdgeStretch stretch = edge_stretch(cloth_);
+    report.max_edge_stretch = std::max(report.max_edge_stretch, stretch.max);
+    report.min_edge_stretch = std::min(report.min_edge_stretch, stretch.min);
+    report.max_principal_stretch = std::max(report.max_principal_stretch, range_of(principal_stretches(cloth_)).max);
+    if (stretch.max > over_stretch_ratio) over_stretch_.measure(cloth_, frame_);
+}
+
+void Simulation::move_pins(int step, FrameReport& report) {
+    if (!moving_pins_) return;
+    const Stopwatch moving;
+    moving_pins_->set_velocities(cloth_, start_of(step), time_step_);
+    if (auto* device = std::get_if<OpenClStep>(&filter_)) device->place_pins(cloth_);
+    report.pin_seconds += moving.seconds();
+    report.step_seconds += moving.seconds();
 }
 
 void Simulation::run_step(int step, FrameReport& report) {
-    const Stopwatch before_filter;
-    if (moving_pins_) {
-        const double time = (static_cast<double>(frame_) * steps_per_frame_ + step) * time_step_;
-        moving_pins_->set_velocities(cloth_, time, time_step_);
-    }
+    move_pins(step, report);
     const Stopwatch integrating;
     integrate();
     report.integrator_seconds += integrating.seconds();
-    report.step_seconds += before_filter.seconds();
+    report.step_seconds += integrating.seconds();
     if (const auto vertex = first_not_finite(cloth_.velocities)) {
         return break_down(step, "integrator", "velocity of vertex " + std::to_string(*vertex) + " is not finite",
                           report);
@@ -142,7 +167,9 @@ void Simulation::run_step(int step, FrameReport& report) {
         report.step_seconds += seconds;
         note_stats(*stats, frame_, step, report);
     }
+    const Stopwatch measuring;
     measure_areas(report, std::holds_alternative<CustomFilter>(filter_) ? std::nullopt : stats);
+    report.measuring_seconds += measuring.seconds();
     if (stats && stats->status == Status::diverged) {
         return break_down(step, "strain_limiting",
                           "the filter met or made a number that is not finite" + first_offender(*stats), report);
@@ -150,19 +177,59 @@ void Simulation::run_step(int step, FrameReport& report) {
 
     const Stopwatch after_filter;
     if (!colliders_.empty()) {
-        resolve_collisions(cloth_, colliders_, time_step_, starts_inside_);
-        if (starts_inside_) starts_inside_ = is_inside();
+        respond_to_collisions(step);
         report.collision_seconds += after_filter.seconds();
     }
     advance_positions(cloth_, time_step_);
     report.step_seconds += after_filter.seconds();
     if (const auto vertex = first_not_finite(cloth_.positions))
         return break_down(step, "advance", "position of vertex " + std::to_string(*vertex) + " is not finite", report);
-    const EdgeStretch stretch = edge_stretch(cloth_);
-    report.max_edge_stretch = std::max(report.max_edge_stretch, stretch.max);
-    report.min_edge_stretch = std::min(report.min_edge_stretch, stretch.min);
-    report.max_principal_stretch = std::max(report.max_principal_stretch, range_of(principal_stretches(cloth_)).max);
-    if (stretch.max > over_stretch_ratio) over_stretch_.measure(cloth_, frame_);
+    const Stopwatch measuring_end;
+    measure_stretches(report);
+    report.measuring_seconds += measuring_end.seconds();
+}
+
+void Simulation::respond_to_collisions(int step) {
+    const std::vector<ColliderStep> colliders = collider_steps(step);
+    resolve_collisions(cloth_, colliders, time_step_, starts_inside_);
+    if (starts_inside_) starts_inside_ = is_inside(colliders);
+}
+
+bool Simulation::takes_whole_steps() const {
+    return std::holds_alternative<OpenClStep>(filter_) || std::holds_alternative<ReferenceStep>(filter_);
+}
+
+void Simulation::run_whole_step(int step, FrameReport& report) {
+    move_pins(step, report);
+    auto* device = std::get_if<OpenClStep>(&filter_);
+    if (!colliders_.empty()) {
+        const Stopwatch looking;
+        const std::vector<ColliderStep> colliders = collider_steps(step);
+        if (device != nullptr)
+            device->find_contacts(colliders);
+        else
+            std::get<ReferenceStep>(filter_).find_contacts(cloth_, colliders);
+        report.collision_seconds += looking.seconds();
+        report.step_seconds += looking.seconds();
+    }
+    const Stopwatch stepping;
+    const Stats stats = device != nullptr ? device->step(cloth_) : std::get<ReferenceStep>(filter_).step(cloth_);
+    report.filter_seconds += stepping.seconds();
+    report.step_seconds += stepping.seconds();
+    note_stats(stats, frame_, step, report);
+    note({stats.max_area_change, stats.rms_area_change}, report);
+    if (stats.status == Status::diverged) {
+        return break_down(step, "stand_alone",
+                          "the step met or made a number that is not finite" + first_offender(stats), report);
+    }
+}
+
+void Simulation::read_back(FrameReport& report) {
+    auto* device = std::get_if<OpenClStep>(&filter_);
+    if (device == nullptr) return;
+    const Stopwatch reading;
+    device->read_back(cloth_);
+    report.read_back_seconds = reading.seconds();
 }
 
 Energy Simulation::energy() const {
@@ -173,10 +240,21 @@ FrameReport Simulation::run_frame() {
     FrameReport report;
     report.frame = frame_;
     int steps = 0;
-    while (steps < steps_per_frame_ && !breakdown_) run_step(steps++, report);
+    while (steps < steps_per_frame_ && !breakdown_)
+        if (takes_whole_steps())
+            run_whole_step(steps++, report);
+        else
+            run_step(steps++, report);
     report.rms_area_change = std::sqrt(report.rms_area_change / steps);
+    if (takes_whole_steps()) read_back(report);
+    const Stopwatch measuring;
+    if (takes_whole_steps()) {
+        measure_stretches(report);
+        if (keep_area_changes_) area_changes_ = scenes::area_changes(cloth_);
+    }
     report.max_speed = greatest_speed(cloth_);
     report.energy = energy();
+    report.measuring_seconds += measuring.seconds();
     ++frame_;
     return report;
 }

@@ -15,7 +15,8 @@
 namespace apsl::scenes {
 
 /// The stages a scene names, run step by step: pin motion, integrator, strain limiting, collision response, and then
-/// x ← x + Δt v. A stage that is not named is not made.
+/// x ← x + Δt v; or pin motion and a whole step, where the cloth stays on the device and is read back and measured at
+/// the end of a frame. A stage that is not named is not made.
 class Simulation {
 public:
     /// `keep_area_changes`: measure the area change of every triangle at the end of a frame, for files and pictures.
@@ -44,16 +45,24 @@ private:
     void make_springs(const Scene& scene);
     void name_stages(const Scene& scene);
     void run_step(int step, FrameReport& report);
+    bool takes_whole_steps() const;
+    void run_whole_step(int step, FrameReport& report);
+    void read_back(FrameReport& report);
+    std::vector<ColliderStep> collider_steps(int step) const;
+    void respond_to_collisions(int step);
+    double start_of(int step) const;
+    void move_pins(int step, FrameReport& report);
     void integrate();
-    bool is_inside() const;
+    bool is_inside(std::span<const ColliderStep> colliders) const;
     void measure_areas(FrameReport& report, const std::optional<Stats>& stats);
+    void measure_stretches(FrameReport& report);
     void break_down(int step, const std::string& stage, const std::string& what, FrameReport& report);
 
     ClothState cloth_;
     std::array<double, 3> gravity_;
     double time_step_;
     int steps_per_frame_;
-    std::vector<Collider> colliders_;
+    std::vector<MovingCollider> colliders_;
     bool starts_inside_ = false;  // of a collider, and has not come out yet
     FilterStage filter_;
     std::optional<Pins> moving_pins_;

@@ -28,6 +28,26 @@ std::string raised_masses_advice(const RunReport& report) {
     return caps_alone ? cap_triangles_advice(report.caps) : light_vertices_advice(report.light);
 }
 
+std::string times_text(const RunReport& report, const RunSummary& summary) {
+    std::string text = format("  time a frame           %.2f ms in all", 1e3 * summary.step_seconds_per_frame);
+    const char* before = "; ";
+    const auto add = [&](const char* what, double seconds) {
+        text += before + format("%s %.2f ms", what, 1e3 * seconds);
+        before = ", ";
+    };
+    if (summary.pin_seconds_per_frame > 0.0) add("pins", summary.pin_seconds_per_frame);
+    if (!report.stand_alone) add("integration", summary.integrator_seconds_per_frame);
+    if (report.backend != "none")
+        add(report.stand_alone ? "whole step" : "strain limiting", summary.filter_seconds_per_frame);
+    if (summary.collision_seconds_per_frame > 0.0) add("collisions", summary.collision_seconds_per_frame);
+    text += " (medians)\n  beside it              ";
+    before = "";
+    if (summary.read_back_seconds_per_frame > 0.0) add("reading back", summary.read_back_seconds_per_frame);
+    add("measuring", summary.measuring_seconds_per_frame);
+    if (summary.writing_seconds_per_frame > 0.0) add("writing", summary.writing_seconds_per_frame);
+    return text + "\n";
+}
+
 }  // namespace
 
 std::string summary_text(const RunReport& report) {
@@ -51,10 +71,10 @@ std::string summary_text(const RunReport& report) {
                    summary.max_edge_stretch);
     text += format("  principal stretch      %.3f at most\n", summary.max_principal_stretch);
     if (report.limits_stretch) {
-        text +=
-            format("  stretch ceiling        exceeded by %.3f at most%s; it held up to %u of %zu triangles\n",
-                   summary.max_stretch_excess, summary.collision_seconds_per_frame > 0.0 ? ", before collisions" : "",
-                   summary.stretch_rows, report.triangles);
+        text += format("  stretch ceiling        exceeded by %.3f at most%s; it held up to %u of %zu triangles\n",
+                       summary.max_stretch_excess,
+                       summary.collision_seconds_per_frame > 0.0 && !report.stand_alone ? ", before collisions" : "",
+                       summary.stretch_rows, report.triangles);
     }
     if (report.over_stretch.count > 0) {
         const auto& [worst, why] = report.over_stretch.entries.front();
@@ -84,12 +104,8 @@ std::string summary_text(const RunReport& report) {
         text += format("  iterations             %.1f a solve, %lld solves\n", summary.iterations_per_solve,
                        static_cast<long long>(summary.solves));
     }
-    text += format("  time a frame           %.2f ms in all; integration %.2f ms", 1e3 * summary.step_seconds_per_frame,
-                   1e3 * summary.integrator_seconds_per_frame);
-    if (filtered) text += format(", strain limiting %.2f ms", 1e3 * summary.filter_seconds_per_frame);
-    if (summary.collision_seconds_per_frame > 0.0)
-        text += format(", collisions %.2f ms", 1e3 * summary.collision_seconds_per_frame);
-    text += " (medians)\n  status                 " + status_name(summary.status) + "\n";
+    text += times_text(report, summary);
+    text += "  status                 " + status_name(summary.status) + "\n";
     for (const KernelReport& kernel : report.kernels) {
         text += format("  %-30s %8lld launches %10.3f ms\n", kernel.name.c_str(),
                        static_cast<long long>(kernel.launches), 1e3 * kernel.seconds);

@@ -175,6 +175,14 @@ Tuning set_up(const TuneOptions& options) {
     return tuning;
 }
 
+Document unlimited(const Tuning& tuning) {
+    Document document = tuning.document;
+    document.erase("strain_limiting");
+    // Of steps of the limiter nothing is left but gravity.
+    if (std::holds_alternative<StandAloneIntegrator>(tuning.scene.integrator)) document.erase("integrator");
+    return document;
+}
+
 bool names_a_solver(const Document& document) {
     const auto limiting = document.find("strain_limiting");
     return limiting != document.end() && limiting->is_object() && limiting->contains("solver");
@@ -193,9 +201,7 @@ int tune_command(const TuneOptions& options) {
     note_interruptions();
     Table table(tuning.stream);
 
-    Document unlimited = tuning.document;
-    unlimited.erase("strain_limiting");
-    const std::optional<Trial> without_limiter = whole_run(tuning, unlimited);
+    const std::optional<Trial> without_limiter = whole_run(tuning, unlimited(tuning));
     if (!without_limiter) return interruption();
     table.add_without_limiter(*without_limiter, tuning.goal);
 

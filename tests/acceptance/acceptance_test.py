@@ -120,7 +120,7 @@ class PaperFigures(Case):
         self.assertGreaterEqual(self.figure_1_unfiltered["summary"]["max_area_change"], 0.9)
 
     def test_figure_6(self):
-        self.assertEqual(self.figure_6["stages"], ["stand_alone", "strain_limiting"])
+        self.assertEqual(self.figure_6["stages"], ["stand_alone"])
         self.assertEqual(self.figure_6["summary"]["status"], "ok")
         self.assertLessEqual(self.figure_6["summary"]["max_area_change"], 0.0477)
 

@@ -74,6 +74,20 @@ TEST_CASE("a stage that is named without values takes the defaults of the stage"
     CHECK(scene.colliders.size() == 3);
 }
 
+TEST_CASE("a stand-alone scene is whole steps under its gravity and damping") {
+    const Scene scene =
+        parse(R"({"mesh": {"grid": {}}, "gravity": [1, -2, 3], "integrator": {"stand_alone": {"damping": 0.25}},
+                                  "strain_limiting": {"stretch_ceiling": 1.1}})");
+    CHECK(std::get<StandAloneIntegrator>(scene.integrator).damping == 0.25);
+    REQUIRE(scene.strain_limiting);
+    CHECK(scene.strain_limiting->options.integrates);
+    CHECK(scene.strain_limiting->parameters.acceleration == std::array<float, 3>{1.0f, -2.0f, 3.0f});
+    CHECK(scene.strain_limiting->parameters.damping == 0.25f);
+    const Scene filtered = parse(R"({"mesh": {"grid": {}}, "strain_limiting": {}})");
+    CHECK(!filtered.strain_limiting->options.integrates);
+    CHECK(filtered.strain_limiting->parameters.acceleration == std::array<float, 3>{});
+}
+
 TEST_CASE("every value is taken from where it stands") {
     const Scene scene = parse(R"({
         "mesh": {"tube": {"radius": [0.1, 0.4], "height": 0.5, "segments": [24, 12], "diagonals": "random", "jitter": 0.3}},
@@ -84,12 +98,12 @@ TEST_CASE("every value is taken from where it stands") {
                  {"vertices": [0], "motion": {"translate": {"velocity": [0, 1, 0]}}}],
         "masses": [{"vertices": [5], "factor": 1000}, {"box": {"max": [0, 0, 0]}, "factor": 0.5}],
         "start": {"scale": [1, 0, -1], "random": 0.25, "rest_areas": 1.5},
-        "integrator": {"stand_alone": {"bend_stiffness": 50, "damping": 0}},
+        "integrator": {"bending_springs": {"bend_stiffness": 50, "damping": 0}},
         "strain_limiting": {"matrix": "printed", "apply": "assembled_csr", "regularization": 2.5, "sub_steps": 3,
                             "target_area_change": 0.01, "tolerance": 0.001, "max_iterations": 9,
                             "adaptive_threshold": 6, "first_regularization": 1.5, "warm_start_sub_steps": 3, "execution": "many_groups"},
         "colliders": [{"sphere": {"center": [0, 1, 0], "radius": 0.2, "friction": 0.5, "thickness": 0.01}},
-                      {"plane": {"point": [0, -1, 0], "normal": [0, 2, 0]}},
+                      {"plane": {"point": [0, -1, 0], "normal": [0, 2, 0]}, "motion": {"translate": {"velocity": [0, 0, 1]}, "stop": 3}},
                       {"capsule": {"a": [0, 0, 0], "b": [0, 1, 0], "radius": 0.05}}]})");
     const TubeMesh& tube = std::get<TubeMesh>(scene.mesh);
     CHECK(tube.radius == std::array<double, 2>{0.1, 0.4});
@@ -104,18 +118,18 @@ TEST_CASE("every value is taken from where it stands") {
 
     REQUIRE(scene.pins.size() == 4);
     CHECK(std::get<SelectedVertices>(scene.pins[0].selection).vertices == std::vector<std::uint32_t>{3, 1});
-    CHECK(std::holds_alternative<PinHeld>(scene.pins[0].motion.path));
+    CHECK(std::holds_alternative<Held>(scene.pins[0].motion.path));
     CHECK(std::get<SelectedCorners>(scene.pins[1].selection).corners == std::vector<std::string>{"min_x_max_y"});
     const SelectedBox& box = std::get<SelectedBox>(scene.pins[2].selection);
     CHECK(box.min == std::array<double, 3>{0, 1, 2});
     CHECK(std::isinf(box.max[0]));
-    const PinRotation& rotation = std::get<PinRotation>(scene.pins[2].motion.path);
+    const Rotation& rotation = std::get<Rotation>(scene.pins[2].motion.path);
     CHECK(rotation.axis == std::array<double, 3>{0, 0, 2});
     CHECK(rotation.degrees_per_second == 90);
     CHECK(rotation.center == std::array<double, 3>{1, 1, 1});
     CHECK(scene.pins[2].motion.start == 0.5);
     CHECK(scene.pins[2].motion.stop == 2.0);
-    CHECK(std::get<PinTranslation>(scene.pins[3].motion.path).velocity == std::array<double, 3>{0, 1, 0});
+    CHECK(std::get<Translation>(scene.pins[3].motion.path).velocity == std::array<double, 3>{0, 1, 0});
 
     REQUIRE(scene.masses.size() == 2);
     CHECK(std::get<SelectedVertices>(scene.masses[0].selection).vertices == std::vector<std::uint32_t>{5});
@@ -126,9 +140,10 @@ TEST_CASE("every value is taken from where it stands") {
     CHECK(scene.start.random == 0.25);
     CHECK(scene.start.rest_areas == 1.5);
 
-    const auto& stand_alone = std::get<StandAloneIntegrator>(scene.integrator);
-    CHECK(stand_alone.bend_stiffness == 50);
-    CHECK(stand_alone.damping == 0);
+    const auto& springs = std::get<BendingSpringsIntegrator>(scene.integrator);
+    CHECK(springs.bend_stiffness == 50);
+    CHECK(springs.damping == 0);
+    CHECK(!scene.strain_limiting->options.integrates);
     const StrainLimiting& limiting = scene.strain_limiting.value();
     CHECK(limiting.options.matrix == Matrix::printed);
     CHECK(limiting.options.apply == Apply::assembled_csr);
@@ -142,13 +157,16 @@ TEST_CASE("every value is taken from where it stands") {
     CHECK(limiting.options.warm_start_sub_steps == 3);
     CHECK(limiting.options.execution == Execution::many_groups);
 
-    const Sphere& sphere = std::get<Sphere>(scene.colliders[0]);
+    const Sphere& sphere = std::get<Sphere>(scene.colliders[0].shape);
     CHECK(sphere.center == std::array<double, 3>{0, 1, 0});
     CHECK(sphere.radius == 0.2);
     CHECK(sphere.contact.friction == 0.5);
     CHECK(sphere.contact.thickness == 0.01);
-    CHECK(std::get<Plane>(scene.colliders[1]).normal == std::array<double, 3>{0, 2, 0});
-    CHECK(std::get<Capsule>(scene.colliders[2]).b == std::array<double, 3>{0, 1, 0});
+    CHECK(std::holds_alternative<Held>(scene.colliders[0].motion.path));
+    CHECK(std::get<Translation>(scene.colliders[1].motion.path).velocity == std::array<double, 3>{0, 0, 1});
+    CHECK(scene.colliders[1].motion.stop == 3.0);
+    CHECK(std::get<Plane>(scene.colliders[1].shape).normal == std::array<double, 3>{0, 2, 0});
+    CHECK(std::get<Capsule>(scene.colliders[2].shape).b == std::array<double, 3>{0, 1, 0});
 }
 
 TEST_CASE("a mesh file is looked for beside the scene") {
@@ -246,12 +264,27 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "strain_limiting.matrix: expected one of consistent, printed, got \"exact\""},
         {R"("strain_limiting": [])", "strain_limiting: expected an object, got []"},
         {R"("integrator": {})",
-         "integrator: is missing what it is, expected one of implicit_springs, stand_alone, none"},
+         "integrator: is missing what it is, expected one of implicit_springs, bending_springs, stand_alone, none"},
         {R"("integrator": {"none": {}, "stand_alone": {}})", "integrator: has both stand_alone and none"},
         {R"("integrator": {"implicit_springs": {"stretch_stiffness": -1}})",
          "integrator.implicit_springs.stretch_stiffness: expected a number ≥ 0, got -1"},
         {R"("integrator": {"stand_alone": {"stretch_stiffness": 1}})",
-         "integrator.stand_alone.stretch_stiffness: unknown key, expected one of bend_stiffness, damping"},
+         "integrator.stand_alone.stretch_stiffness: unknown key, expected damping"},
+        {R"("integrator": {"stand_alone": {"bend_stiffness": 200}}, "strain_limiting": {})",
+         "integrator.stand_alone.bend_stiffness: a stand-alone cloth has no springs, those in front of the filter are "
+         "integrator.bending_springs"},
+        {R"("integrator": {"stand_alone": {"damping": -1}}, "strain_limiting": {})",
+         "integrator.stand_alone.damping: expected a number ≥ 0, got -1"},
+        {R"("integrator": {"stand_alone": {}})",
+         "integrator: stand_alone is a step of the limiter, expected strain_limiting beside it"},
+        {R"("integrator": {"stand_alone": {}}, "strain_limiting": null)",
+         "integrator: stand_alone is a step of the limiter, expected strain_limiting beside it"},
+        {R"("integrator": {"stand_alone": {}}, "strain_limiting": {"execution": "one_group"})",
+         "integrator: stand_alone: integrates is on, which needs execution many_groups"},
+        {R"("integrator": {"stand_alone": {}}, "strain_limiting": {"sub_steps": 1})",
+         "integrator: stand_alone: sub_steps is 1, expected "},
+        {R"("integrator": {"stand_alone": {}}, "strain_limiting": {"stepping": "whole_step"})",
+         "integrator: stand_alone: stepping is whole_step, "},
         {R"("pins": {})", "pins: expected an array, got {}"},
         {R"("pins": [{"vertices": [-1]}])", "pins[0].vertices[0]: expected a whole number from 0"},
         {R"("pins": [{"corners": ["min_x"]}, {"vertices": []}])", "pins[1].vertices: expected at least one, got []"},
@@ -262,7 +295,14 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "pins[0].motion.rotate.axis: expected an axis of any length but 0"},
         {R"("pins": [{"vertices": [0], "motion": {"rotate": {}, "start": 2, "stop": 1}}])",
          "pins[0].motion.stop: expected a number ≥ 2, got 1"},
-        {R"("colliders": [{"cube": {}}])", "colliders[0].cube: unknown key, expected one of sphere, plane, capsule"},
+        {R"("colliders": [{"cube": {}}])",
+         "colliders[0].cube: unknown key, expected one of motion, sphere, plane, capsule"},
+        {R"("colliders": [{"motion": {"translate": {}}}])",
+         "colliders[0]: is missing what it is, expected one of sphere, plane, capsule"},
+        {R"("colliders": [{"sphere": {}, "motion": {"rotate": {"axis": [0, 0, 0]}}}])",
+         "colliders[0].motion.rotate.axis: expected an axis of any length but 0"},
+        {R"("colliders": [{"sphere": {}, "motion": {"slide": {}}}])",
+         "colliders[0].motion.slide: unknown key, expected"},
         {R"("colliders": [{"sphere": {"radius": 0}}])", "colliders[0].sphere.radius: expected a number > 0, got 0"},
     }));
     CAPTURE(rest);

@@ -252,8 +252,39 @@ TEST_CASE("the printed matrix below 2 is warned of, the consistent one is not") 
     CHECK_THAT(run_apsl(command).errors, !Catch::Contains("warning"));
 }
 
-TEST_CASE("stand-alone springs that had to be added are warned of") {
-    const std::string command = "validate " + scene_path("stand_alone_curtain.json") + " --set mesh.grid.diagonals=";
+TEST_CASE("a stand-alone cloth: stages and parts of the time, and a warning where no ceiling holds it together") {
+    const TemporaryFolder folder;
+    const std::string out = (folder.path() / "out").string();
+    const std::string command = "run " + scene_path("stand_alone_curtain.json") +
+                                " --set mesh.grid.vertices=[9,9] --set 'pins=[{\"vertices\":[0,8]}]' --frames 3 "
+                                "--set 'colliders=[{\"sphere\":{\"center\":[0,-1,0]}}]' --profile --out " +
+                                out;
+    const ProgramRun run = run_apsl(command);
+    CAPTURE(run.errors);
+    REQUIRE(run.exit_code == 0);
+    CHECK_THAT(run.errors, !Catch::Contains("warning"));
+    CHECK_THAT(run.output, Catch::Contains("ms in all; whole step ") && Catch::Contains(", collisions ") &&
+                               !Catch::Contains("integration") && Catch::Contains("reading back ") &&
+                               Catch::Contains(", measuring ") && Catch::Contains(", writing "));
+    const nlohmann::json report = read_json(folder.path() / "out" / "report.json");
+    CHECK(report["stages"] == nlohmann::json::array({"stand_alone", "colliders"}));
+    for (const nlohmann::json& frame : report["frames"]) {
+        CHECK(frame["integrator_seconds"] == 0.0);
+        for (const char* part :
+             {"filter_seconds", "collision_seconds", "read_back_seconds", "measuring_seconds", "writing_seconds"})
+            CHECK(frame[part] > 0.0);
+    }
+    const auto& kernels = report["kernels"];
+    CHECK(std::any_of(kernels.begin(), kernels.end(), [](const nlohmann::json& kernel) {
+        return kernel["name"] == "fill_contacts" && kernel["launches"] == 3 && kernel["seconds"] > 0.0;
+    }));
+    CHECK_THAT(run_apsl(command + " --set strain_limiting.stretch_ceiling=0").errors,
+               Catch::Contains("warning: ") && Catch::Contains("areas alone do not hold a cloth together"));
+}
+
+TEST_CASE("bending springs that had to be added are warned of") {
+    const std::string command = "validate " + scene_path("stand_alone_curtain.json") +
+                                " --set integrator.bending_springs={} --set mesh.grid.diagonals=";
     CHECK_THAT(run_apsl(command + "alternating").errors,
                Catch::StartsWith("warning: ") && Catch::Contains("lattices that only areas join"));
     CHECK(run_apsl(command + "random").errors.empty());

@@ -35,7 +35,7 @@ TEST_CASE("every scene of the project is valid and runs") {
     CAPTURE(scene);
     const ProgramRun validated = run_apsl("validate " + scene_path(scene));
     CHECK(validated.exit_code == 0);
-    CHECK((validated.errors.empty() || scene == "paper_fig6.json"));  // whose regular mesh needs springs added
+    CHECK(validated.errors.empty());
     const ProgramRun run = run_apsl("run --frames 2 " + scene_path(scene));
     CAPTURE(run.errors);
     CHECK(run.exit_code == 0);

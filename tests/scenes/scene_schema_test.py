@@ -41,12 +41,14 @@ FULL = {
                         "stretch_ceiling": 0},
     "colliders": [
         {"sphere": {"center": [0, 0, 0], "radius": 1, "friction": 0.1, "thickness": 0.1}},
-        {"plane": {"point": [0, 0, 0], "normal": [0, 1, 0], "friction": 0.1, "thickness": 0.1}},
+        {"plane": {"point": [0, 0, 0], "normal": [0, 1, 0], "friction": 0.1, "thickness": 0.1},
+         "motion": {"rotate": {"axis": [0, 1, 0], "degrees_per_second": 1, "center": [0, 0, 0]}, "start": 1, "stop": 2}},
         {"capsule": {"a": [0, 0, 0], "b": [0, 1, 0], "radius": 1, "friction": 0.1, "thickness": 0.1}},
     ],
 }
 TUBE = {"mesh": {"tube": {"radius": [1, 1], "height": 1, "segments": [8, 4], "diagonals": "random", "jitter": 0.1}},
-        "integrator": {"stand_alone": {"bend_stiffness": 1, "damping": 1}}}
+        "integrator": {"bending_springs": {"bend_stiffness": 1, "damping": 1}}}
+STAND_ALONE = {"mesh": {"grid": {}}, "integrator": {"stand_alone": {"damping": 1}}, "strain_limiting": {}}
 NONE = {"mesh": {"grid": {}}, "integrator": {"none": {}}}
 FILE = {"mesh": {"file": "mesh.obj", "height": 1, "weld": 0.001}}
 
@@ -63,6 +65,7 @@ BAD_VALUES = [
     (("strain_limiting", "stretch_ceiling"), [0, 1]), (("strain_limiting", "stretch_ceiling"), []),
     (("pins", 1, "corners"), ["min_w"]), (("pins", 2), {}), (("pins", 0, "motion"), {}),
     (("pins", 0, "motion", "start"), -1), (("integrator",), {}), (("integrator",), {"none": {}, "stand_alone": {}}),
+    (("integrator",), {"stand_alone": {"bend_stiffness": 1}}), (("integrator",), {"stand_alone": {"damping": -1}}),
     (("integrator", "implicit_springs", "damping"), -1), (("strain_limiting", "regularization"), 0.9),
     (("strain_limiting", "regularization"), [1, 0.9]), (("strain_limiting", "tolerance"), 1),
     (("strain_limiting", "matrix"), "exact"), (("strain_limiting", "sub_steps"), -1),
@@ -71,7 +74,8 @@ BAD_VALUES = [
     (("strain_limiting", "execution"), "serial"), (("strain_limiting", "solver"), "jacobi"), (("strain_limiting", "bound_interval"), 0), (("strain_limiting", "target_area_change"), -1),
     (("masses",), {}), (("masses", 0), {"factor": 2}), (("masses", 0, "factor"), 0), (("masses", 1, "corners"), ["x"]),
     (("start",), []), (("start", "scale"), [1, 1]), (("start", "random"), -1), (("start", "rest_areas"), 0),
-    (("colliders", 0), {}), (("colliders", 0, "sphere", "radius"), 0), (("colliders", 1, "plane", "friction"), -1),
+    (("colliders", 0), {}), (("colliders", 1), {"motion": {"translate": {}}}), (("colliders", 1, "motion"), {}),
+    (("colliders", 0), {"sphere": {}, "plane": {}}), (("colliders", 0, "sphere", "radius"), 0), (("colliders", 1, "plane", "friction"), -1),
 ]
 
 
@@ -125,7 +129,7 @@ class SceneSchema(unittest.TestCase):
                 self.assertEqual([error.message for error in validator.iter_errors(json.loads(scene.read_text()))], [])
 
     def test_full_documents_are_accepted_by_both(self):
-        for document in (FULL, TUBE, NONE, FILE):
+        for document in (FULL, TUBE, STAND_ALONE, NONE, FILE):
             self.assertEqual([error.message for error in validator.iter_errors(document)], [])
             run = self.run_validate(document)
             self.assertEqual(run.returncode, 0, run.stderr)
@@ -141,7 +145,7 @@ class SceneSchema(unittest.TestCase):
 
     def test_both_know_the_same_keys_in_every_object(self):
         seen = set()
-        for document in (FULL, TUBE, NONE, FILE):
+        for document in (FULL, TUBE, STAND_ALONE, NONE, FILE):
             for path in objects(document):
                 with self.subTest(path=path):
                     extended = changed(document, path + ("zebra",), 1)

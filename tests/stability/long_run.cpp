@@ -62,8 +62,8 @@ nlohmann::ordered_json to_json(const Stretch& stretch) {
 }
 
 std::size_t device_bytes(Simulation& simulation) {
-    const auto* filter = std::get_if<OpenClFilter>(&simulation.filter());
-    return filter ? filter->device_bytes() : 0;
+    const OpenClCloth* device = on_device(simulation.filter());
+    return device ? device->device_bytes() : 0;
 }
 
 int run(const std::string& scene_file, int frames, const std::string& out, const std::vector<std::string>& changes) {

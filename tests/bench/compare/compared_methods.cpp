@@ -71,6 +71,18 @@ TEST_CASE("stiff springs are the scene's, times a factor") {
     CHECK_THROWS_AS(prepare_scene(find_method("springs"), stand_alone, "scene.json", {}), scenes::InputError);
 }
 
+TEST_CASE("a stand-alone scene is a step of our limiter, which no other method takes") {
+    nlohmann::json stand_alone = scene_text;
+    stand_alone["integrator"] = {{"stand_alone", nlohmann::json::object()}};
+    for (const char* other : {"none", "springs", "pbd_edges", "apsl_direct"}) {
+        CAPTURE(other);
+        CHECK_THROWS_WITH(prepare_scene(find_method(other), stand_alone, "scene.json", {}),
+                          Catch::Contains(std::string("scene.json: ") + other + ": expected a scene whose integrator"));
+    }
+    CHECK(prepare_scene(find_method("apsl_ceiling"), stand_alone, "scene.json", {}).document["integrator"] ==
+          stand_alone["integrator"]);
+}
+
 TEST_CASE("lists of values make every combination") {
     const std::vector<ParameterValues> all = combinations({{"a", {1, 2}}, {"b", {3, 4, 5}}, {"c", 6}});
     REQUIRE(all.size() == 6);

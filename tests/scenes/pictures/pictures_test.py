@@ -151,6 +151,25 @@ class Render(Folder):
         self.assertGreater(share_of(bare[middle], is_red), 0.95)
         self.assertEqual(share_of(with_sphere[middle], is_red), 0.0)
 
+    def test_colliders_that_move_are_drawn_where_they_are(self):
+        # The second frame is that of 1 s.
+        middle = (slice(240, 280), slice(700, 730))
+        for name, motion, drawn in (
+                ("away", {"translate": {"velocity": [2, 0, 0]}}, False),
+                ("stopped", {"translate": {"velocity": [2, 0, 0]}, "stop": 0}, True),
+                ("turned", {"rotate": {"axis": [0, 1, 0], "degrees_per_second": 90, "center": [0.5, 0, 0]}}, False),
+                ("about_itself", {"rotate": {"axis": [0, 1, 0], "degrees_per_second": 90}}, True)):
+            with self.subTest(motion=name):
+                scene = self.folder / f"{name}.json"
+                sphere = {"center": [0, 0, 0.3], "radius": 0.2}
+                scene.write_text(json.dumps({"colliders": [{"sphere": sphere, "motion": motion}]}))
+                done = run(RENDER, write_sequence(self.folder / name, frames=2, scene=scene), "--views", "absolute",
+                           *FRONT)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                red = share_of(pixels(self.folder / name / "pictures" / "frame_0001.png")[middle], is_red)
+                self.assertEqual(red > 0.95, not drawn)
+                self.assertEqual(red == 0.0, drawn)
+
     def test_a_cloth_that_broke_down_is_still_drawn(self):
         folder = self.folder / "run"
         folder.mkdir()

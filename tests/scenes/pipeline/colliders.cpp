@@ -63,7 +63,7 @@ TEST_CASE("colliders: a cloth dropped onto each of them never gets inside") {
     double deepest = std::numeric_limits<double>::infinity();
     for (int step = 0; step < 90; ++step) {
         integrator.advance_velocities(cloth, {0.0, -9.81, 0.0}, time_step);
-        touched += resolve_collisions(cloth, std::array{collider}, time_step);
+        touched += resolve_collisions(cloth, std::array{ColliderStep{collider}}, time_step);
         advance_positions(cloth, time_step);
         for (std::size_t vertex = 0; vertex < cloth.masses.size(); ++vertex)
             deepest = std::min(deepest, distance(collider, place(cloth, vertex)) - contact.thickness);
@@ -74,9 +74,10 @@ TEST_CASE("colliders: a cloth dropped onto each of them never gets inside") {
 }
 
 TEST_CASE("colliders: a corner between two planes and a sphere on the floor hold too") {
-    const std::vector<Collider> colliders{Plane{.point = {0, -0.2, 0}, .normal = {0, 1, 0}, .contact = {}},
-                                          Plane{.point = {0.3, 0, 0}, .normal = {-1, 1, 0}, .contact = {}},
-                                          Sphere{.center = {0, -0.1, 0}, .radius = 0.15, .contact = {}}};
+    const std::vector<ColliderStep> colliders{
+        ColliderStep{Plane{.point = {0, -0.2, 0}, .normal = {0, 1, 0}, .contact = {}}},
+        ColliderStep{Plane{.point = {0.3, 0, 0}, .normal = {-1, 1, 0}, .contact = {}}},
+        ColliderStep{Sphere{.center = {0, -0.1, 0}, .radius = 0.15, .contact = {}}}};
     ClothState cloth = sample_cloth(test::grid(13, 13, 0.4, 0.4, test::Diagonals::alternating));
     ImplicitSprings integrator(cloth, stretch_springs(*cloth.topology, cloth.rest_positions, 20.0), 0.5);
     for (int step = 0; step < 120; ++step) {
@@ -85,7 +86,7 @@ TEST_CASE("colliders: a corner between two planes and a sphere on the floor hold
         advance_positions(cloth, time_step);
     }
     for (std::size_t vertex = 0; vertex < cloth.masses.size(); ++vertex)
-        for (const Collider& collider : colliders) CHECK(distance(collider, place(cloth, vertex)) > -1e-6);
+        for (const ColliderStep& collider : colliders) CHECK(distance(collider.shape, place(cloth, vertex)) > -1e-6);
 }
 
 TEST_CASE("colliders: a place at the very center or axis is pushed out, not made NaN") {
@@ -93,7 +94,7 @@ TEST_CASE("colliders: a place at the very center or axis is pushed out, not made
                                        Collider(Capsule{.a = {0, -1, 0}, .b = {0, 1, 0}, .radius = 0.5, .contact = {}}),
                                        Collider(Capsule{.a = {0, 0, 0}, .b = {0, 0, 0}, .radius = 0.5, .contact = {}}));
     ClothState cloth = sample_cloth(test::right_triangle());  // vertex 0 lies at the origin
-    resolve_collisions(cloth, std::array{collider}, time_step);
+    resolve_collisions(cloth, std::array{ColliderStep{collider}}, time_step);
     advance_positions(cloth, time_step);
     CHECK(distance(collider, place(cloth, 0)) == Approx(0.0).margin(1e-9));
 }
@@ -102,7 +103,8 @@ TEST_CASE("colliders: what is outside and what is pinned keeps its velocity, bit
     ClothState cloth = sample_cloth(test::right_triangle(), {0});
     cloth.velocities = noise(9, 0.1, 1);
     const std::vector<double> before = cloth.velocities;
-    const std::vector<Collider> colliders{Sphere{.center = {0, 0, 0}, .radius = 0.5, .contact = {.friction = 1.0}}};
+    const std::vector<ColliderStep> colliders{
+        ColliderStep{Sphere{.center = {0, 0, 0}, .radius = 0.5, .contact = {.friction = 1.0}}}};
     CHECK(resolve_collisions(cloth, colliders, time_step) == 0);
     CHECK(cloth.velocities == before);
 }
@@ -124,7 +126,7 @@ TEST_CASE("colliders: what starts inside is led out, and keeps no speed from it"
     double fastest = 0.0;
     double deepest = before.depth;
     for (int step = 0; step < 120; ++step) {
-        resolve_collisions(cloth, std::array{collider}, time_step, true);
+        resolve_collisions(cloth, std::array{ColliderStep{collider}}, time_step, true);
         advance_positions(cloth, time_step);
         for (const double velocity : cloth.velocities) fastest = std::max(fastest, std::abs(velocity));
         const StartInside now = start_inside(cloth, collider);
@@ -145,7 +147,7 @@ TEST_CASE("colliders: what starts inside and moves inwards comes no deeper, unde
     double depth = 0.1;
     for (int step = 0; step < 120; ++step) {
         free_fall.advance_velocities(cloth, {0.0, -9.81, 0.0}, time_step);
-        resolve_collisions(cloth, std::array{floor}, time_step, true);
+        resolve_collisions(cloth, std::array{ColliderStep{floor}}, time_step, true);
         advance_positions(cloth, time_step);
         const double now = -distance(floor, place(cloth, 0));
         CHECK(now <= depth);
@@ -156,8 +158,9 @@ TEST_CASE("colliders: what starts inside and moves inwards comes no deeper, unde
 }
 
 TEST_CASE("colliders: leading out changes no bit where nothing starts inside") {
-    const std::vector<Collider> colliders{Sphere{.center = {0, -0.31, 0}, .radius = 0.3, .contact = {.friction = 0.3}},
-                                          Plane{.point = {0, -0.2, 0}, .normal = {0, 1, 0}, .contact = {}}};
+    const std::vector<ColliderStep> colliders{
+        ColliderStep{Sphere{.center = {0, -0.31, 0}, .radius = 0.3, .contact = {.friction = 0.3}}},
+        ColliderStep{Plane{.point = {0, -0.2, 0}, .normal = {0, 1, 0}, .contact = {}}}};
     const auto dropped = [&](bool lead_out) {
         ClothState cloth = sample_cloth(test::grid(9, 9, 0.5, 0.5, test::Diagonals::alternating));
         ImplicitSprings integrator(cloth, stretch_springs(*cloth.topology, cloth.rest_positions, 20.0), 0.5);

@@ -25,7 +25,7 @@ void advance(ClothState& cloth, const Collider& collider, const std::array<doubl
     ImplicitSprings free_fall(cloth, {}, 0.0);
     for (int step = 0; step < steps; ++step) {
         free_fall.advance_velocities(cloth, gravity, time_step);
-        resolve_collisions(cloth, std::array{collider}, time_step);
+        resolve_collisions(cloth, std::array{ColliderStep{collider}}, time_step);
         advance_positions(cloth, time_step);
     }
 }

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+// Whole steps of a stand-alone cloth: on the device, by the reference, and what the report says of them.
+#include "run/filter_stage.hpp"
+#include "run/parse_scene.hpp"
+#include "run/simulation.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace apsl;
+using namespace apsl::scenes;
+
+namespace {
+
+// A curtain of 17×17 that falls; `rest` adds keys.
+Scene parse(const std::string& rest) {
+    return parse_scene(nlohmann::json::parse(R"({"mesh": {"grid": {"vertices": [17, 17]}}, "steps_per_frame": 2,
+        "time_step": 0.0125, "integrator": {"stand_alone": {"damping": 0.5}},
+        "strain_limiting": {"stretch_ceiling": 1.1, "sub_steps": 20}, )" +
+                                             rest + "}"),
+                       "scene.json");
+}
+
+const std::string corners = R"("pins": [{"vertices": [0, 16]}])";
+// One corner stays, the other is led round and then held.
+const std::string led = R"("pins": [{"vertices": [0]}, {"vertices": [16], "motion": {"stop": 0.2,
+    "rotate": {"axis": [0, 1, 0], "degrees_per_second": 90, "center": [-0.5, 0, -0.5]}}}])";
+
+struct Run {
+    ClothState cloth;
+    std::vector<FrameReport> frames;
+};
+
+Run run(const Scene& scene, Backend backend, int frames, double away = 0.0) {
+    SceneCloth cloth = make_scene_cloth(scene);
+    for (double& coordinate : cloth.state.positions) coordinate += away;
+    for (double& coordinate : cloth.state.rest_positions) coordinate += away;
+    FilterStage stage =
+        make_filter_stage(scene, cloth.state, backend,
+                          backend == Backend::opencl ? std::optional(choose_opencl_device({})) : std::nullopt, false);
+    Simulation simulation(scene, std::move(cloth), std::move(stage), true);
+    Run result;
+    for (int frame = 0; frame < frames; ++frame) result.frames.push_back(simulation.run_frame());
+    CHECK(!simulation.breakdown());
+    result.cloth = simulation.cloth();
+    return result;
+}
+
+double greatest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+    double greatest = 0.0;
+    for (std::size_t n = 0; n < a.size(); ++n) greatest = std::max(greatest, std::abs(a[n] - b[n]));
+    return greatest;
+}
+
+}  // namespace
+
+TEST_CASE("stand-alone: the device does what the reference does, pins that move included") {
+    for (const std::string& pins : {corners, led}) {
+        CAPTURE(pins);
+        const Scene scene = parse(pins);
+        const Run device = run(scene, Backend::opencl, 6);
+        const Run reference = run(scene, Backend::reference, 6);
+        // m. The cloth has fallen 7 cm by then, and a fold is a matter of rounding.
+        CHECK(greatest_difference(device.cloth.positions, reference.cloth.positions) < 1e-3);
+        for (std::size_t n = 0; n < 6; ++n) {
+            CHECK(device.frames[n].max_area_change ==
+                  Approx(reference.frames[n].max_area_change).epsilon(0.05).margin(2e-4));
+            CHECK(device.frames[n].max_principal_stretch ==
+                  Approx(reference.frames[n].max_principal_stretch).epsilon(0.005));
+            CHECK(device.frames[n].energy.total() == Approx(reference.frames[n].energy.total()).epsilon(0.01));
+        }
+        CHECK(device.frames.back().energy.gravity < -0.05);
+    }
+}
+
+TEST_CASE("stand-alone: the same bytes twice") {
+    const Scene scene = parse(led);
+    const Run first = run(scene, Backend::opencl, 12), second = run(scene, Backend::opencl, 12);
+    CHECK(first.cloth.positions == second.cloth.positions);
+    CHECK(first.cloth.velocities == second.cloth.velocities);
+}
+
+TEST_CASE("stand-alone: pins are where their motion has them, and those at rest do not move by one bit") {
+    const Scene scene = parse(led);
+    for (const Backend backend : {Backend::opencl, Backend::reference}) {
+        const Run moving = run(scene, backend, 4);    // 0.1 s of 0.2
+        const Run stopped = run(scene, backend, 12);  // 0.3 s
+        const auto corner = [](const Run& run, std::size_t axis) { return run.cloth.positions[3 * 16 + axis]; };
+        // 1 m from the corner that stays: 9° and 18° about y, by the right-hand rule from x towards −z.
+        constexpr double degree = 0.017453292519943295;
+        CHECK(corner(moving, 0) == Approx(-0.5 + std::cos(9.0 * degree)).margin(1e-6));
+        CHECK(corner(moving, 2) == Approx(-0.5 - std::sin(9.0 * degree)).margin(1e-6));
+        CHECK(corner(stopped, 0) == Approx(-0.5 + std::cos(18.0 * degree)).margin(1e-6));
+        CHECK(corner(stopped, 2) == Approx(-0.5 - std::sin(18.0 * degree)).margin(1e-6));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            CHECK(stopped.cloth.velocities[3 * 16 + axis] == 0.0);
+            CHECK(stopped.cloth.positions[axis] == stopped.cloth.rest_positions[axis]);
+        }
+        CHECK(stopped.frames.back().max_principal_stretch < 1.13);
+    }
+}
+
+TEST_CASE("stand-alone: the device's own pinned corner goes with the motion too") {
+    // What hangs beside the corner knows where it is on the device alone.
+    const Run run_led = run(parse(led), Backend::opencl, 12);
+    CHECK(run_led.frames.back().max_edge_stretch < 1.12);
+    CHECK(run_led.frames.back().min_edge_stretch > 0.88);
+}
+
+TEST_CASE("stand-alone: far from the origin the device does bit for bit what it does there") {
+    const Scene scene = parse(corners);
+    const Run here = run(scene, Backend::opencl, 6);
+    const Run away = run(scene, Backend::opencl, 6, 1024.0);
+    std::vector<double> brought_back = away.cloth.positions;
+    for (double& coordinate : brought_back) coordinate -= 1024.0;
+    CHECK(greatest_difference(brought_back, here.cloth.positions) < 1e-12);
+    CHECK(away.cloth.velocities == here.cloth.velocities);
+}
+
+TEST_CASE("stand-alone: the report tells the parts of a frame's time apart") {
+    for (const Backend backend : {Backend::opencl, Backend::reference}) {
+        for (const FrameReport& frame : run(parse(led), backend, 3).frames) {
+            CHECK(frame.sub_steps >= 40);
+            CHECK(frame.integrator_seconds == 0.0);
+            CHECK(frame.collision_seconds == 0.0);
+            CHECK(frame.filter_seconds > 0.0);
+            CHECK(frame.pin_seconds > 0.0);
+            CHECK(frame.step_seconds >= frame.pin_seconds + frame.filter_seconds);
+            CHECK(frame.step_seconds < 1.01 * (frame.pin_seconds + frame.filter_seconds) + 1e-3);
+            CHECK((frame.read_back_seconds > 0.0) == (backend == Backend::opencl));
+            CHECK(frame.measuring_seconds > 0.0);
+        }
+    }
+}
+
+namespace {
+
+// m, how deep the deepest free vertex is in any of the colliders where they are at `time`.
+double deepest(const Scene& scene, const ClothState& cloth, double time) {
+    double depth = 0.0;
+    for (const MovingCollider& collider : scene.colliders)
+        depth = std::max(
+            depth, start_inside(cloth, collider_step(collider, time - scene.time_step, scene.time_step).shape).depth);
+    return depth;
+}
+
+const std::string drape = R"("colliders": [
+    {"sphere": {"center": [0.05, -0.21, 0], "radius": 0.2, "friction": 0.4, "thickness": 0.005},
+     "motion": {"rotate": {"axis": [0, 1, 0], "degrees_per_second": 180}, "start": 0.2}},
+    {"plane": {"point": [0, -0.45, 0], "normal": [0, 1, 0], "friction": 0.6, "thickness": 0.005}},
+    {"capsule": {"a": [-0.6, -0.25, 0.3], "b": [0.6, -0.25, 0.3], "radius": 0.05, "friction": 0.2}}])";
+
+}  // namespace
+
+TEST_CASE("stand-alone: what falls on colliders stays outside of them, within its ceiling") {
+    const Scene scene = parse(drape);
+    CHECK(scene.strain_limiting->options.keeps_contacts);
+    for (const int frames : {8, 20, 40}) {
+        const Run fallen = run(scene, Backend::opencl, frames);
+        const double time = 2 * frames * scene.time_step;
+        CHECK(deepest(scene, fallen.cloth, time) < 2e-4);
+        const FrameReport& last = fallen.frames.back();
+        CHECK(last.max_principal_stretch < 1.15);
+        CHECK(last.max_area_change < 0.08);
+        CHECK(last.collision_seconds > 0.0);
+    }
+}
+
+TEST_CASE("stand-alone: on colliders too the device does what the reference does, and the same bytes twice") {
+    const Scene scene = parse(drape);
+    const Run device = run(scene, Backend::opencl, 8), reference = run(scene, Backend::reference, 8);
+    CHECK(greatest_difference(device.cloth.positions, reference.cloth.positions) < 2e-3);
+    CHECK(device.cloth.positions == run(scene, Backend::opencl, 8).cloth.positions);
+}
+
+TEST_CASE("stand-alone: a floor that moves takes the cloth along") {
+    const Scene scene = parse(R"("colliders": [{"plane": {"point": [0, 0, 0], "friction": 0.8},
+        "motion": {"translate": {"velocity": [1, 0.5, 0]}}}])");
+    for (const Backend backend : {Backend::opencl, Backend::reference}) {
+        const Run carried = run(scene, backend, 20);  // 0.5 s; 1 m/s is reached after 0.13 s
+        for (std::size_t v = 0; v < 289; ++v) {
+            CHECK(carried.cloth.positions[3 * v + 1] == Approx(0.25).margin(2e-5));
+            CHECK(carried.cloth.velocities[3 * v] == Approx(1.0).margin(0.02));
+        }
+    }
+}
+
+TEST_CASE("stand-alone: a thin rod that is swung does not pass through the cloth") {
+    // 20 cm a step, twice its thickness, which is more than the edges are long.
+    const Scene scene = parse(corners + R"(, "gravity": [0, 0, 0], "colliders": [{"capsule":
+        {"a": [-1, -1.05, 0.2], "b": [1, -1.05, 0.2], "radius": 0.05}, "motion": {"translate": {"velocity": [0, 16, 0]},
+        "stop": 0.075}}])");
+    const Run hit = run(scene, Backend::opencl, 3);  // 0.075 s, 1.2 m
+    // It is 0.15 m above where the sheet was, and each column of vertices lies over it.
+    for (std::size_t column = 0; column < 17; ++column) {
+        double highest = 0.0;
+        for (std::size_t row = 0; row < 17; ++row)
+            highest = std::max(highest, hit.cloth.positions[3 * (17 * row + column) + 1]);
+        CAPTURE(column);
+        CHECK(highest > 0.18);
+    }
+    CHECK(deepest(scene, hit.cloth, 0.075) < 2e-4);
+}
+
+TEST_CASE("stand-alone: what starts inside a collider is led out without a bounce") {
+    const Scene scene = parse(R"("gravity": [0, 0, 0], "colliders": [{"plane": {"point": [0, 0.05, 0]}}])");
+    const Run led_out = run(scene, Backend::opencl, 60);
+    double fastest = 0.0;
+    for (const FrameReport& frame : led_out.frames) fastest = std::max(fastest, frame.max_speed);
+    CHECK(fastest < 0.02);  // at once it would be 4 m/s
+    CHECK(led_out.cloth.positions[1] == Approx(0.05).margin(1.1e-4));
+}
+
+TEST_CASE("stand-alone: a number that is not finite ends the run and is named") {
+    const Scene scene = parse(corners);
+    SceneCloth cloth = make_scene_cloth(scene);
+    cloth.state.velocities[3 * 100 + 1] = std::numeric_limits<double>::quiet_NaN();
+    FilterStage stage = make_filter_stage(scene, cloth.state, Backend::opencl, choose_opencl_device({}), false);
+    Simulation simulation(scene, std::move(cloth), std::move(stage), false);
+    CHECK(simulation.run_frame().status == Status::diverged);
+    REQUIRE(simulation.breakdown());
+    CHECK(simulation.breakdown()->step == 0);
+    CHECK(simulation.breakdown()->stage == "stand_alone");
+    CHECK_THAT(simulation.breakdown()->what, Catch::Contains("first at vertex 100"));
+}
