@@ -29,19 +29,36 @@ inline OpenClCloth* on_device(FilterStage& stage) {
     return nullptr;
 }
 
+/// Whether collision response has nothing left to do: contact is kept in the call.
+inline bool keeps_contacts(const FilterStage& stage) {
+    if (const auto* filter = std::get_if<OpenClFilter>(&stage)) return filter->keeps_contacts();
+    if (const auto* filter = std::get_if<ReferenceFilter>(&stage)) return filter->keeps_contacts();
+    return false;
+}
+
+/// The scene's strain limiting, with contact in the call where a stretch ceiling would otherwise be lost to it.
+inline StrainLimiting with_contacts(const Scene& scene) {
+    StrainLimiting limiting = scene.strain_limiting.value();
+    const Parameters& parameters = limiting.parameters;
+    if (limiting.options.limits_stretch && parameters.stepping != Stepping::whole_step && parameters.sub_steps >= 2)
+        limiting.options.keeps_contacts = !scene.colliders.empty();
+    return limiting;
+}
+
 /// `device`: set for Backend::opencl. Throws InputError for a cloth that a device cannot hold.
 inline FilterStage make_filter_stage(const Scene& scene, const ClothState& cloth, Backend backend,
                                      const std::optional<OpenClDevice>& device, bool profile) {
     if (!scene.strain_limiting) return std::monostate{};
     if (backend == Backend::opencl)
         if (const auto text = beyond_float_range(cloth)) throw InputError(scene.file + ": " + *text);
-    const bool whole_step = scene.strain_limiting->options.integrates;
+    const StrainLimiting limiting = with_contacts(scene);
+    const bool whole_step = limiting.options.integrates;
     if (backend == Backend::reference) {
-        if (whole_step) return ReferenceStep(cloth, *scene.strain_limiting);
-        return ReferenceFilter(cloth, *scene.strain_limiting);
+        if (whole_step) return ReferenceStep(cloth, limiting);
+        return ReferenceFilter(cloth, limiting);
     }
-    if (whole_step) return OpenClStep(device.value(), cloth, *scene.strain_limiting, profile);
-    return OpenClFilter(device.value(), cloth, *scene.strain_limiting, profile);
+    if (whole_step) return OpenClStep(device.value(), cloth, limiting, profile);
+    return OpenClFilter(device.value(), cloth, limiting, profile);
 }
 
 }  // namespace apsl::scenes

@@ -5,9 +5,10 @@
 
 namespace apsl::scenes {
 
-Stats OpenClFilter::filter(ClothState& cloth) {
+Stats OpenClFilter::filter(ClothState& cloth, std::span<const ColliderStep> colliders) {
     const std::size_t bytes = cloth.positions.size() * sizeof(float);
-    uploaded_positions_ = to_float_around(origin_for(cloth.positions), cloth.positions);
+    const std::array<double, 3> origin = origin_for(cloth.positions);
+    uploaded_positions_ = to_float_around(origin, cloth.positions);
     uploaded_velocities_ = to_float(cloth.velocities);
     check_opencl(clEnqueueWriteBuffer(device_.queue(), device_.positions(), CL_FALSE, 0, bytes,
                                       uploaded_positions_.data(), 0, nullptr, nullptr),
@@ -15,7 +16,11 @@ Stats OpenClFilter::filter(ClothState& cloth) {
     check_opencl(clEnqueueWriteBuffer(device_.queue(), device_.velocities(), CL_FALSE, 0, bytes,
                                       uploaded_velocities_.data(), 0, nullptr, nullptr),
                  "uploading velocities");
-    device_.queue_call();
+    if (keeps_contacts_) {
+        if (!contacts_) contacts_.emplace(device_, cloth.inverse_masses.size(), colliders.size());
+        contacts_->fill(device_, colliders, {.seconds = time_step_}, time_step_, origin);
+    }
+    device_.queue_call(keeps_contacts_ ? contacts_->records() : nullptr);
     check_opencl(clEnqueueReadBuffer(device_.queue(), device_.velocities(), CL_FALSE, 0, bytes,
                                      filtered_velocities_.data(), 0, nullptr, nullptr),
                  "reading velocities");

@@ -7,10 +7,18 @@ namespace apsl::scenes {
 
 ReferenceFilter::ReferenceFilter(const ClothState& cloth, const StrainLimiting& settings)
     : parameters_(settings.parameters),
+      keeps_contacts_(settings.options.keeps_contacts),
       regularization_(settings.regularization.begin(), settings.regularization.end()),
       stretch_ceilings_(settings.stretch_ceilings.begin(), settings.stretch_ceilings.end()),
       limiter_(cloth.topology, settings.options) {
     if (settings.options.limits_stretch) rest_shapes_ = rest_shapes(cloth);
+}
+
+Stats ReferenceFilter::filter(ClothState& cloth, std::span<const ColliderStep> colliders) {
+    const auto time_step = static_cast<double>(parameters_.time_step);
+    std::vector<double> touched;
+    if (keeps_contacts_) touched = contacts(cloth, colliders, {.seconds = time_step}, time_step);
+    return call(cloth, {}, touched);
 }
 
 Stats ReferenceFilter::call(ClothState& cloth, std::span<double> end_positions, std::span<const double> contacts) {

@@ -159,8 +159,9 @@ void Simulation::run_step(int step, FrameReport& report) {
     std::optional<Stats> stats;
     if (!std::holds_alternative<std::monostate>(filter_)) {
         const Stopwatch filtering;
-        if (auto* opencl = std::get_if<OpenClFilter>(&filter_)) stats = opencl->filter(cloth_);
-        if (auto* reference = std::get_if<ReferenceFilter>(&filter_)) stats = reference->filter(cloth_);
+        const std::vector<ColliderStep> colliders = collider_steps(step);
+        if (auto* opencl = std::get_if<OpenClFilter>(&filter_)) stats = opencl->filter(cloth_, colliders);
+        if (auto* reference = std::get_if<ReferenceFilter>(&filter_)) stats = reference->filter(cloth_, colliders);
         if (auto* custom = std::get_if<CustomFilter>(&filter_)) stats = custom->filter(cloth_);
         const double seconds = filtering.seconds();
         report.filter_seconds += seconds;
@@ -176,7 +177,7 @@ void Simulation::run_step(int step, FrameReport& report) {
     }
 
     const Stopwatch after_filter;
-    if (!colliders_.empty()) {
+    if (!colliders_.empty() && !keeps_contacts(filter_)) {
         respond_to_collisions(step);
         report.collision_seconds += after_filter.seconds();
     }

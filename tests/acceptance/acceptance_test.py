@@ -87,6 +87,8 @@ class StretchCeiling(Case):
     @classmethod
     def run_scenes(cls):
         cls.curtain = cls.run_scene("ceiling", "curtain.json", *cls.CEILING, "--frames", "60")
+        cls.ball = cls.run_scene("ball", "sphere_drape.json", *cls.CEILING, "--set", "mesh.grid.vertices=[33, 33]",
+                                 "--frames", "60")
         cls.drawn = cls.run_scene("drawn", "curtain.json", *cls.CEILING, "--frames", "60",
                                   "--set", "mesh.grid.vertices=[33, 33]", "--set", f"pins={json.dumps(cls.DRAWN)}")
 
@@ -96,6 +98,14 @@ class StretchCeiling(Case):
         self.assertLessEqual(max(frame["max_area_change"] for frame in frames), 0.02)
         self.assertLessEqual(max(frame["max_edge_stretch"] for frame in frames), 1.12)
         self.assertLessEqual(max(frame["max_principal_stretch"] for frame in frames), 1.125)
+
+    def test_contact_is_kept_in_the_call(self):
+        # Behind the call a ball would draw edges to 1.27 times their length, in every frame.
+        frames = self.ball["frames"]
+        self.assertLessEqual(max(frame["max_edge_stretch"] for frame in frames), 1.13)
+        self.assertLessEqual(max(frame["max_area_change"] for frame in frames), 0.05)
+        self.assertLessEqual(frames[-1]["max_area_change"], 0.01)
+        self.assertLessEqual(max(frame["energy"]["total"] for frame in frames), self.ball["start_energy"] + 0.01)
 
     def test_what_a_pin_drew_far_out_comes_back(self):
         frames = self.drawn["frames"]
