@@ -105,7 +105,7 @@ class StretchCeiling(Case):
         self.assertLessEqual(max(frame["max_edge_stretch"] for frame in frames), 1.13)
         self.assertLessEqual(max(frame["max_area_change"] for frame in frames), 0.05)
         self.assertLessEqual(frames[-1]["max_area_change"], 0.01)
-        self.assertLessEqual(max(frame["energy"]["total"] for frame in frames), self.ball["start_energy"] + 0.01)
+        self.assertLessEqual(max(frame["energy"]["total"] for frame in frames), self.ball["start_energy"]["total"] + 0.01)
 
     def test_what_a_pin_drew_far_out_comes_back(self):
         frames = self.drawn["frames"]
