@@ -22,7 +22,8 @@ apsl_buffers c_views(const CallerBuffers& buffers) {
             {v.regularization.buffer, v.regularization.offset},
             {v.rest_shapes.buffer, v.rest_shapes.offset},
             {v.stretch_ceilings.buffer, v.stretch_ceilings.offset},
-            {v.contacts.buffer, v.contacts.offset}};
+            {v.contacts.buffer, v.contacts.offset},
+            {v.rest_hinges.buffer, v.rest_hinges.offset}};
 }
 
 struct CTopology {
