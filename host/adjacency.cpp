@@ -78,12 +78,43 @@ void append_patches(Adjacency& out, const Patches& patches, const apslk_cloth& c
         {{cloth.triangle_begin + cloth.triangle_count, static_cast<std::uint32_t>(out.patch_vertices.size())}});
 }
 
+// In the order of their least place, so that neighbours in memory share vertices.
+void append_hinges(Adjacency& out, const Topology& topology, const Places& places, apslk_cloth& cloth) {
+    const std::vector<Hinge> given = topology.hinges();
+    const auto place = [&](std::uint32_t vertex) { return cloth.vertex_begin + places.of_vertex[vertex]; };
+    std::vector<cl_uint4> placed(given.size());
+    std::vector<std::uint32_t> order(given.size());
+    for (std::uint32_t h = 0; h < given.size(); ++h) {
+        placed[h] = {{place(given[h][0]), place(given[h][1]), place(given[h][2]), place(given[h][3])}};
+        order[h] = h;
+    }
+    const auto least = [&](std::uint32_t h) { return *std::min_element(placed[h].s, placed[h].s + 4); };
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return std::pair(least(a), a) < std::pair(least(b), b); });
+    // Two bits of a hinge's corner hold its number.
+    cloth.hinge_begin = index(out.hinges.size(), max_index / 4, "hinges");
+    cloth.hinge_count = index(given.size(), max_index / 4, "hinges");
+    index(out.hinges.size() + given.size(), max_index / 4, "hinges");
+    std::vector<std::vector<std::uint32_t>> at_vertex(cloth.vertex_count);
+    for (const std::uint32_t h : order) {
+        const auto r = static_cast<std::uint32_t>(out.hinges.size());
+        for (std::uint32_t n = 0; n < 4; ++n) at_vertex[placed[h].s[n] - cloth.vertex_begin].push_back(4 * r + n);
+        out.hinges.push_back(placed[h]);
+        out.hinge_order.push_back(cloth.hinge_begin + h);
+    }
+    for (const std::vector<std::uint32_t>& corners : at_vertex) {
+        out.hinge_corners.insert(out.hinge_corners.end(), corners.begin(), corners.end());
+        out.hinge_corner_offsets.push_back(static_cast<std::uint32_t>(out.hinge_corners.size()));
+    }
+}
+
 }  // namespace
 
 Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloths, Matrix matrix, bool with_pattern,
-                          std::uint32_t patch_triangles) {
+                          bool with_hinges, std::uint32_t patch_triangles) {
     Adjacency out;
     out.corner_offsets.push_back(0);
+    if (with_hinges) out.hinge_corner_offsets.push_back(0);
     if (with_pattern) out.row_offsets.push_back(0);
     std::size_t vertices = 0, triangles = 0, rest_areas = 0;
     for (const auto& topology : cloths) {
@@ -112,6 +143,7 @@ Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloth
             for (const std::uint32_t vertex : topology->triangles()[triangle])
                 out.triangles.push_back(cloth.vertex_begin + places.of_vertex[vertex]);
         }
+        if (with_hinges) append_hinges(out, *topology, places, cloth);
         if (with_pattern) append_pattern(out, *topology, patches, places, matrix, cloth);
 
         vertices += topology->vertex_count();

@@ -108,7 +108,8 @@ apsl::Options options_from(const apsl_options* options) {
             .limits_stretch = o.limits_stretch != 0,
             .stretch_ceiling_per_triangle = o.stretch_ceiling_per_triangle != 0,
             .integrates = o.integrates != 0,
-            .keeps_contacts = o.keeps_contacts != 0};
+            .keeps_contacts = o.keeps_contacts != 0,
+            .bends = o.bends != 0};
 }
 
 apsl::Parameters parameters_from(const apsl_parameters& p) {
@@ -125,6 +126,8 @@ apsl::Parameters parameters_from(const apsl_parameters& p) {
             .stretch_ceiling = p.stretch_ceiling,
             .acceleration = {p.acceleration[0], p.acceleration[1], p.acceleration[2]},
             .damping = p.damping,
+            .bending = p.bending,
+            .bending_iterations = p.bending_iterations,
             .stepping = static_cast<apsl::Stepping>(p.stepping),
             .enabled = p.enabled != 0};
 }
@@ -162,7 +165,7 @@ void hand_over(cl_event end, cl_event* event) {
         clReleaseEvent(end);
 }
 
-/// What a cloth has at rest, by one of StrainLimiter's two calls, into `target`, an argument of this `name`.
+/// What a cloth has at rest, by one of StrainLimiter's three calls, into `target`, an argument of this `name`.
 template <class Call>
 apsl_result enqueue_rest(const Call& call, apsl_limiter* limiter, cl_command_queue queue,
                          const apsl_buffer_view* rest_positions, const apsl_buffer_view* target, const char* name,
@@ -203,6 +206,7 @@ apsl_options apsl_default_options(void) {
             o.stretch_ceiling_per_triangle,
             o.integrates,
             o.keeps_contacts,
+            o.bends,
             {}};
 }
 
@@ -222,6 +226,8 @@ apsl_parameters apsl_default_parameters(void) {
             p.most_sub_steps,
             {p.acceleration[0], p.acceleration[1], p.acceleration[2]},
             p.damping,
+            p.bending,
+            p.bending_iterations,
             {}};
 }
 
@@ -329,7 +335,8 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
                                   .regularization = view_from(buffers->regularization),
                                   .rest_shapes = view_from(buffers->rest_shapes),
                                   .stretch_ceilings = view_from(buffers->stretch_ceilings),
-                                  .contacts = view_from(buffers->contacts)};
+                                  .contacts = view_from(buffers->contacts),
+                                  .rest_hinges = view_from(buffers->rest_hinges)};
         const cl_event end = limiter->limiter.enqueue(queue, views, list, events(wait_count, wait_list));
         hand_over(end, event);
     });
@@ -348,6 +355,14 @@ apsl_result apsl_limiter_enqueue_rest_shapes(apsl_limiter* limiter, cl_command_q
                                              const cl_event* wait_list, cl_event* event) {
     return enqueue_rest(&apsl::StrainLimiter::enqueue_rest_shapes, limiter, queue, rest_positions, rest_shapes,
                         "rest_shapes", wait_count, wait_list, event);
+}
+
+apsl_result apsl_limiter_enqueue_rest_hinges(apsl_limiter* limiter, cl_command_queue queue,
+                                             const apsl_buffer_view* rest_positions,
+                                             const apsl_buffer_view* rest_hinges, cl_uint wait_count,
+                                             const cl_event* wait_list, cl_event* event) {
+    return enqueue_rest(&apsl::StrainLimiter::enqueue_rest_hinges, limiter, queue, rest_positions, rest_hinges,
+                        "rest_hinges", wait_count, wait_list, event);
 }
 
 apsl_result apsl_limiter_read_stats(const apsl_limiter* limiter, cl_command_queue queue, apsl_stats* stats,

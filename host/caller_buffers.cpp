@@ -68,6 +68,9 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
     check_optional(options.regularization_per_triangle, buffers.regularization, counts.triangles, "regularization",
                    "regularization_per_triangle");
     check_optional(options.limits_stretch, buffers.rest_shapes, 4 * counts.triangles, "rest_shapes", "limits_stretch");
+    // A mesh without hinges needs no buffer.
+    if (!options.bends || counts.hinges > 0)
+        check_optional(options.bends, buffers.rest_hinges, 2 * counts.hinges, "rest_hinges", "bends");
     check_optional(options.stretch_ceiling_per_triangle, buffers.stretch_ceilings, counts.triangles, "stretch_ceilings",
                    "stretch_ceiling_per_triangle");
     check_optional(options.keeps_contacts, buffers.contacts, APSLK_CONTACT_SIZE * counts.vertices, "contacts",

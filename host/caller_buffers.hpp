@@ -11,6 +11,7 @@ namespace apsl::host {
 struct CallerCounts {
     std::size_t vertices = 0;
     std::size_t triangles = 0;  ///< rest areas
+    std::size_t hinges = 0;     ///< 0 where nothing bends
 };
 
 /// Floats from the first of the caller's positions to the last.

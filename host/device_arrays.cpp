@@ -10,6 +10,8 @@ namespace {
 
 // Bytes of a triangle's corner gradients (kernels/gradients.h).
 constexpr std::size_t gradient_bytes = 32;
+// Of a hinge's (kernels/hinges.h).
+constexpr std::size_t hinge_gradient_bytes = 32;
 
 }  // namespace
 
@@ -57,6 +59,18 @@ DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency
     arrays.ordered_rest = zeroed(triangle_count * (options.limits_stretch ? APSLK_CEILING + 1 : 1));
     arrays.ordered_scaling = upload(std::vector<float>(options.regularization_per_triangle ? triangle_count : 1, 1.0f));
     if (by_chebyshev) arrays.vertex_bounds = buffer(vertex_count * sizeof(float));
+    const std::size_t hinge_count = adjacency.hinges.size();
+    if (hinge_count > 0) {
+        arrays.hinges = upload(adjacency.hinges);
+        arrays.hinge_order = upload(adjacency.hinge_order);
+        arrays.hinge_corner_offsets = upload(adjacency.hinge_corner_offsets);
+        arrays.hinge_corners = upload(adjacency.hinge_corners);
+        arrays.hinge_gradients = buffer(hinge_count * hinge_gradient_bytes);
+        arrays.hinge_moments = buffer(hinge_count * sizeof(float));
+        arrays.bending_residuals = buffer(vertex_count * sizeof(cl_float4));
+        arrays.bending_steps = buffer(vertex_count * sizeof(cl_float4));
+        arrays.next_bending_steps = buffer(vertex_count * sizeof(cl_float4));
+    }
     arrays.moved = buffer(vertex_count * sizeof(cl_float4));
     const std::size_t moving_vertices = options.positions_only ? 1 : vertex_count;
     arrays.motion = buffer(moving_vertices * sizeof(cl_float4));

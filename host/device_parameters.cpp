@@ -29,6 +29,8 @@ apslk_parameters device_parameters(const ResolvedParameters& p) {
             .most_sub_steps = on ? p.most_sub_steps : 0,
             .acceleration = {p.acceleration[0], p.acceleration[1], p.acceleration[2]},
             .damping = p.damping,
+            .bending = p.bending,
+            .bending_iterations = p.bending_iterations,
             .padding = {}};
 }
 

@@ -29,6 +29,28 @@ const Kernel& rest_shapes(const Kernel& kernel, const Arrays& a, const BufferVie
 }
 
 template <class Arrays>
+const Kernel& rest_hinges(const Kernel& kernel, const Arrays& a, const BufferView& rest_positions,
+                          const BufferView& rest_hinges) {
+    return set_arguments(kernel, a.cloths, a.vertex_order, a.hinge_order, a.hinges, rest_positions, rest_hinges);
+}
+
+/// `part`: of the small steps.
+template <class Arrays>
+const Kernel& bend_hinges(const Kernel& kernel, const Arrays& a, const Buffers& caller, cl_int part) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.hinge_order, a.hinges, a.hinge_corner_offsets,
+                         a.moved, a.motion, a.hinge_gradients, a.hinge_moments, caller.rest_hinges, part);
+}
+
+template <class Arrays>
+const Kernel& bend_vertices(const Kernel& kernel, const Arrays& a, cl_int part, cl_int iteration) {
+    const bool even = iteration % 2 == 0;
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.hinges, a.hinge_corner_offsets, a.hinge_corners,
+                         a.hinge_gradients, a.hinge_moments, a.bending_residuals,
+                         even ? a.bending_steps : a.next_bending_steps, even ? a.next_bending_steps : a.bending_steps,
+                         a.moved, a.motion, part, iteration);
+}
+
+template <class Arrays>
 const Kernel& predict_positions(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.moved,
                          a.motion, caller.positions, corrected(caller), caller.inverse_masses,

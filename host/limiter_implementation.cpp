@@ -49,7 +49,7 @@ Adjacency StrainLimiter::Implementation::plan(std::span<const std::shared_ptr<co
     check_topologies(topologies);
     options = resolve(requested, facts, topologies);
     largest_cloth = largest_triangle_count(topologies);
-    return build_adjacency(topologies, options.matrix, uses_pattern(options),
+    return build_adjacency(topologies, options.matrix, uses_pattern(options), options.bends,
                            patch_triangles(facts, options, largest_cloth));
 }
 
@@ -110,7 +110,7 @@ void StrainLimiter::Implementation::create_arrays(const Adjacency& adjacency) {
     cloth_count = static_cast<std::uint32_t>(adjacency.cloths.size());
     vertex_count = adjacency.vertex_count;
     triangle_count = adjacency.triangle_count;
-    caller_counts = {adjacency.vertex_count, adjacency.rest_area_count};
+    caller_counts = {adjacency.vertex_count, adjacency.rest_area_count, adjacency.hinges.size()};
     std::uint32_t largest = 1;
     for (const apslk_cloth& cloth : adjacency.cloths)
         largest = std::max({largest, cloth.triangle_count, cloth.vertex_count});
@@ -201,6 +201,14 @@ void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, c
            arguments::gather_displacements(kernels.gather_displacements, arrays, buffers, pressure, sub_step, 0));
 }
 
+void StrainLimiter::Implementation::queue_bending(CommandSequence& commands, const Buffers& buffers,
+                                                  const CallBudget& budget, cl_int part) const {
+    if (budget.bending_iterations == 0 || caller_counts.hinges == 0) return;
+    launch(commands, arguments::bend_hinges(kernels.bend_hinges, arrays, buffers, part));
+    for (cl_int iteration = 0; iteration < budget.bending_iterations; ++iteration)
+        launch(commands, arguments::bend_vertices(kernels.bend_vertices, arrays, part, iteration));
+}
+
 void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands, const Buffers& buffers,
                                                       const CallBudget& budget) const {
     launch(commands, arguments::predict_positions(kernels.predict_positions, arrays, buffers));
@@ -211,12 +219,16 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
         launch(commands, arguments::measure_step(kernels.measure_step, arrays));
         launch_one_group(commands, arguments::judge_whole_step(kernels.judge_whole_step, arrays));
         launch(commands, arguments::start_small_steps(kernels.start_small_steps, arrays, buffers));
+        queue_bending(commands, buffers, budget, 0);
     }
-    for (cl_int sub_step = 0; sub_step < budget.sub_steps; ++sub_step)
+    for (cl_int sub_step = 0; sub_step < budget.sub_steps; ++sub_step) {
         if (by_chebyshev())
             queue_chebyshev(commands, buffers, budget, sub_step);
         else
             queue_conjugate_gradient(commands, buffers, budget, sub_step);
+        // The last sub-step starts no part.
+        if (sub_step + 2 < budget.sub_steps) queue_bending(commands, buffers, budget, sub_step + 1);
+    }
     launch(commands, arguments::measure_area_change(kernels.measure_area_change, arrays, arrays.pressures.front()));
     launch_one_group(commands, arguments::end_call(kernels.end_call, arrays));
     if (options.integrates)
@@ -280,6 +292,15 @@ cl_event StrainLimiter::Implementation::enqueue_rest_shapes(cl_command_queue que
     return enqueue_rest(
         queue, rest_positions, shapes, 4 * caller_counts.triangles, "rest_shapes", wait_list,
         [&]() -> auto& { return arguments::rest_shapes(kernels.rest_shapes, arrays, rest_positions, shapes); });
+}
+
+cl_event StrainLimiter::Implementation::enqueue_rest_hinges(cl_command_queue queue, const BufferView& rest_positions,
+                                                            const BufferView& hinges,
+                                                            std::span<const cl_event> wait_list) {
+    if (!options.bends) invalid("rest hinges are asked for, but Options::bends is off");
+    return enqueue_rest(
+        queue, rest_positions, hinges, 2 * caller_counts.hinges, "rest_hinges", wait_list,
+        [&]() -> auto& { return arguments::rest_hinges(kernels.rest_hinges, arrays, rest_positions, hinges); });
 }
 
 }  // namespace apsl

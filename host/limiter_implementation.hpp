@@ -44,6 +44,8 @@ struct StrainLimiter::Implementation {
                                 std::span<const cl_event> wait_list);
     cl_event enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions, const BufferView& shapes,
                                  std::span<const cl_event> wait_list);
+    cl_event enqueue_rest_hinges(cl_command_queue queue, const BufferView& rest_positions, const BufferView& hinges,
+                                 std::span<const cl_event> wait_list);
 
     host::DeviceFacts facts;
     Options options;
@@ -89,6 +91,9 @@ private:
                          cl_int sub_step) const;
     void queue_conjugate_gradient(host::CommandSequence& commands, const Buffers& buffers,
                                   const host::CallBudget& budget, cl_int sub_step) const;
+    /// What bends in part `part` of the small steps.
+    void queue_bending(host::CommandSequence& commands, const Buffers& buffers, const host::CallBudget& budget,
+                       cl_int part) const;
     void queue_many_groups(host::CommandSequence& commands, const Buffers& buffers,
                            const host::CallBudget& budget) const;
 

@@ -16,6 +16,11 @@ LimiterKernels create_kernels(cl_program program, const Options& options) {
         create(kernels.rest_shapes, "rest_shapes");
         create(kernels.order_stretch_limits, "order_stretch_limits");
     }
+    if (options.bends) {
+        create(kernels.rest_hinges, "rest_hinges");
+        create(kernels.bend_hinges, "bend_hinges");
+        create(kernels.bend_vertices, "bend_vertices");
+    }
     create(kernels.predict_positions, "predict_positions");
     create(kernels.order_triangle_values, "order_triangle_values");
     create(kernels.measure_step, "measure_step");

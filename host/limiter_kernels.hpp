@@ -18,6 +18,7 @@ struct LimiterKernels {
     Kernel matrix_free_apply_dot;  ///< of the consistent or of the printed matrix
     Kernel cg_update, finish_solve, measure_guess, start_from_guess;
     Kernel bound_vertices, chebyshev_step;
+    Kernel rest_hinges, bend_hinges, bend_vertices;
     Kernel rest_shapes, order_stretch_limits;
 };
 

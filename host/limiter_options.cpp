@@ -106,6 +106,7 @@ std::vector<std::string_view> kernel_files(const Options& options) {
                                         "assemble_gradients.cl",   "measure_area_change.cl", "solve_control.cl",
                                         "gather_displacements.cl", "rest_areas.cl"};
     files.push_back(options.integrates ? "store_step.cl" : "update_velocities.cl");
+    if (options.bends) files.insert(files.end(), {"rest_hinges.cl", "bend_hinges.cl"});
     if (!options.positions_only) files.push_back("start_small_steps.cl");
     if (options.solver == Solver::chebyshev) {
         files.insert(files.end(), {"bound_matrix.cl", "chebyshev_step.cl"});
@@ -140,6 +141,7 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
            define("APSLK_POSITIONS_ONLY", options.positions_only ? 1 : 0) +
            define("APSLK_INTEGRATES", options.integrates ? 1 : 0) +
            define("APSLK_KEEPS_CONTACTS", options.keeps_contacts ? 1 : 0) +
+           define("APSLK_BENDS", options.bends ? 1 : 0) +
            define("APSLK_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
            define("APSLK_PATCH_VERTICES", patch_vertices) +
            define("APSLK_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +

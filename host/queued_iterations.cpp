@@ -38,6 +38,7 @@ void CallBudget::add(const ResolvedParameters& p) {
                                 regularization == p.regularization);
     sub_steps = std::max(sub_steps, p.most_sub_steps);
     max_iterations = std::max(max_iterations, p.max_iterations);
+    if (p.bending > 0.0f) bending_iterations = std::max(bending_iterations, p.bending_iterations);
     takes_small_steps = takes_small_steps || p.small_steps > 0;
     first_alpha = std::min(first_alpha, p.first_alpha);
     regularization = std::min(regularization, p.regularization);

@@ -12,6 +12,7 @@ namespace apsl::host {
 struct CallBudget {
     int sub_steps = 0;
     int max_iterations = 0;
+    int bending_iterations = 0;      ///< of cloths that resist bending
     bool takes_small_steps = false;  ///< a cloth takes small steps
     bool one_schedule = true;        ///< α is the same for all cloths, sub-step by sub-step
     // The least of any: what makes for the longest solves.

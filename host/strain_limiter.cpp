@@ -83,6 +83,11 @@ cl_event StrainLimiter::enqueue_rest_shapes(cl_command_queue queue, const Buffer
     return implementation_->enqueue_rest_shapes(queue, rest_positions, rest_shapes, wait_list);
 }
 
+cl_event StrainLimiter::enqueue_rest_hinges(cl_command_queue queue, const BufferView& rest_positions,
+                                            const BufferView& rest_hinges, std::span<const cl_event> wait_list) {
+    return implementation_->enqueue_rest_hinges(queue, rest_positions, rest_hinges, wait_list);
+}
+
 cl_event StrainLimiter::read_stats(cl_command_queue queue, std::span<Stats> stats,
                                    std::span<const cl_event> wait_list) const {
     if (stats.size() != implementation_->cloth_count)

@@ -3,6 +3,7 @@
 #ifndef APSLK_ACCEPT_OR_REJECT_H
 #define APSLK_ACCEPT_OR_REJECT_H
 
+#include "bends.h"
 #include "layout.h"
 #include "limits_stretch.h"
 
@@ -48,20 +49,27 @@ APSLK_INLINE float judged_rms(apslk_area_change change) {
     return change.rms;
 }
 
+// What is judged at x̃ + Δt ṽ, or what counts as no worse there.
+APSLK_INLINE float let_pass_bending(float initial) {
+    return APSLK_BENDS ? fmax(initial, APSLK_BENDING_LET_PASS) : initial;
+}
+
 // The capped RMS decides, so that a single triangle does not cost the others their correction.
 APSLK_INLINE apslk_verdict judge(apslk_area_change initial, apslk_area_change change, float change_at_rest) {
-    const bool rose = judged_max(change) > judged_max(initial) || judged_rms(change) > judged_rms(initial) ||
-                      change.capped_rms > initial.capped_rms;
+    const float initial_rms = let_pass_bending(judged_rms(initial)),
+                initial_capped_rms = let_pass_bending(initial.capped_rms);
+    const bool rose = judged_max(change) > let_pass_bending(judged_max(initial)) || judged_rms(change) > initial_rms ||
+                      change.capped_rms > initial_capped_rms;
     const bool at_rest = judged_max(initial) <= change_at_rest;
     apslk_verdict verdict;
     const float let_pass = APSLK_LIMITS_STRETCH && change.rms < initial.rms ? APSLK_GROWTH_LET_PASS : 1.0f;
-    verdict.worse = rose && (at_rest || change.capped_rms >= let_pass * initial.capped_rms);
+    verdict.worse = rose && (at_rest || change.capped_rms >= let_pass * initial_capped_rms);
 #if APSLK_LIMITS_STRETCH
     // Where tension goes unstable all of a cloth explodes, and the cap would hide it.
-    verdict.worse = verdict.worse || judged_rms(change) > let_pass * judged_rms(initial);
+    verdict.worse = verdict.worse || judged_rms(change) > let_pass * initial_rms;
 #endif
     verdict.rose = rose && !at_rest;
-    verdict.names = !verdict.worse && judged_max(change) > judged_max(initial);
+    verdict.names = rose && !verdict.worse && judged_max(change) > judged_max(initial);
     return verdict;
 }
 

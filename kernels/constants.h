@@ -56,6 +56,17 @@
 // Both rows' bound is that much larger than that of areas alone (APSLK_CHEBYSHEV_REACH), and their polynomial longer.
 #define APSLK_ROWS_REACH 7.2f
 
+// Bending (docs/formulation.md, Bending). The greatest that a polynomial makes of h² W K: explicit steps swing without
+// limit from 4/(1 + 2 lead) on.
+#define APSLK_BENDING_GREATEST 2.4f
+// T_d at zero of the polynomial: how far its values stay above zero, which damps what is stiffest.
+#define APSLK_BENDING_RIPPLE 1.1f
+// Area changes and excesses of stretch up to this are never worse than those of the step without a limit, which has no
+// bending in it: what falls or flies has none at all there.
+#define APSLK_BENDING_LET_PASS 0.01f
+// Bends are those of positions this far on in the part, by the velocities of its start: a damping.
+#define APSLK_BENDING_LEAD 0.25f
+
 // Safety factor of the bound of the matrix. With Options::bound_interval above 1 the directions in it are those of an
 // earlier sub-step, and the cloth has moved since.
 #define APSLK_BOUND_MARGIN 1.1f

@@ -39,6 +39,8 @@ typedef struct {
     apslk_uint patch_begin;
     apslk_uint patch_count;
     apslk_uint rest_area_begin;  // in the caller's arrays
+    apslk_uint hinge_begin;      // in the limiter's arrays, in another order than in the caller's
+    apslk_uint hinge_count;      // 0 where nothing bends
     apslk_uint run;              // entries of the limiter's triangle arrays, of all cloths together
 } apslk_cloth;
 
@@ -59,7 +61,9 @@ typedef struct {
     apslk_int most_sub_steps;      // at least sub_steps: with a stretch ceiling the device may raise them to it
     float acceleration[3];         // m/s²
     float damping;                 // 1/s
-    apslk_int padding[15];         // to a power of two, as a pattern that fills a buffer
+    float bending;                 // N·m
+    apslk_int bending_iterations;  // evaluations a small step
+    apslk_int padding[13];         // to a power of two, as a pattern that fills a buffer
 } apslk_parameters;
 
 // Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.

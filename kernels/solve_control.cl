@@ -38,7 +38,9 @@ APSLK_KERNEL void judge_whole_step(__global apslk_parameters* parameters, __glob
     states[c].greatest_mass = greatest_effective_mass(log_masses, movable);
     store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     if (not_finite > 0.0f) stats[c].status = APSLK_STATUS_DIVERGED;
-    if (not_finite > 0.0f || judged_max(change) <= parameters[c].target_area_change) states[c].stopped = 1;
+    // Where nothing is to be limited there still is bending.
+    const bool met = !APSLK_BENDS && judged_max(change) <= parameters[c].target_area_change;
+    if (not_finite > 0.0f || met) states[c].stopped = 1;
 #if APSLK_LIMITS_STRETCH
     const int more =
         followed_sub_steps(change.max_excess, states[c].asked_sub_steps, parameters[c]) - parameters[c].sub_steps;

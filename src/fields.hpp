@@ -91,6 +91,12 @@ inline constexpr std::tuple parameter_fields{
           "With integrates: what vertices that are not pinned gain in each small step.", false},
     Field{"damping", &Parameters::damping, Bounds{.least = 0.0}, "1/s",
           "With integrates: velocities fall by exp(−damping · t).", false},
+    Field{"bending", &Parameters::bending, Bounds{.least = 0.0}, "N·m",
+          "With bends: the rigidity that hinges resist bending with.", false},
+    Field{"bending_iterations", &Parameters::bending_iterations, Bounds{.least = 1.0, .greatest = 1000.0}, "",
+          "With bends: evaluations of bending a small step. Hinges are softer than asked for where "
+          "B h²/(ρ l⁴) exceeds 0.0125 times its square.",
+          false},
     Field{"stepping", &Parameters::stepping, Bounds{}, "",
           "Which positions each sub-step linearises about. whole_step: the end of the step. small_steps: all but the "
           "last move on by an equal part of the step and correct there. automatic: small steps from 20 sub-steps up, "
@@ -133,6 +139,10 @@ inline constexpr std::tuple option_fields{
         "Vertices stay outside of what they touch: a plane for each is given with every call. It requires velocities, "
         "many_groups, sub_steps ≥ 2 and small steps.",
         false},
+    Field{"bends", &Options::bends, Bounds{}, "",
+          "Hinges resist bending, and their rest state is given with every call. It requires integrates and "
+          "limits_stretch.",
+          false},
 };
 
 /// Of the caller's buffers.

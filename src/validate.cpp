@@ -100,6 +100,9 @@ void validate(const Options& options) {
     }
     if (options.stretch_ceiling_per_triangle && !options.limits_stretch)
         invalid("stretch_ceiling_per_triangle is on, which needs limits_stretch");
+    if (options.bends && !options.integrates) invalid("bends is on, which needs integrates");
+    if (options.bends && !options.limits_stretch)
+        invalid("bends is on, which needs limits_stretch: areas and bending alone let a cloth flow in its plane");
     if (options.limits_stretch) {
         if (resolved_solver(options) != Solver::chebyshev)
             invalid("a stretch ceiling (limits_stretch) needs solver chebyshev");
@@ -142,6 +145,8 @@ void validate(const Options& options, const Parameters& parameters) {
     }
     if (!options.integrates && (parameters.acceleration != std::array<float, 3>{} || parameters.damping != 0.0f))
         invalid("acceleration or damping is given, but integrates is off");
+    if (parameters.bending > 0.0f && !options.bends)
+        invalid("bending is " + number(parameters.bending) + ", expected 0: bends is off");
     if (parameters.stretch_ceiling > 0.0f && !options.limits_stretch)
         invalid("stretch_ceiling is " + number(parameters.stretch_ceiling) + ", expected 0: limits_stretch is off");
     if (resolved_solver(options) == Solver::chebyshev && parameters.adaptive_threshold > 0)

@@ -67,6 +67,33 @@ Array<double> rest_shapes(py::handle positions, py::handle triangles) {
     return result;
 }
 
+Array<double> rest_hinges(py::handle positions, py::handle triangles) {
+    edges(positions, triangles);  // refuses what does not fit
+    const Array<double> points = vectors<double>(positions, "positions", std::nullopt);
+    const auto at = points.unchecked<2>();
+    const auto topology = Topology::build(triangle_list(triangles), static_cast<std::size_t>(at.shape(0)));
+    const auto between = [&](std::uint32_t from, std::uint32_t to) {
+        return std::array{at(to, 0) - at(from, 0), at(to, 1) - at(from, 1), at(to, 2) - at(from, 2)};
+    };
+    const auto cross = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+        return std::array{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const auto dot = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+        return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    Array<double> result({static_cast<py::ssize_t>(topology->hinge_count()), py::ssize_t{2}});
+    double* rest = result.mutable_data();
+    for (const auto& [e0, e1, o0, o1] : topology->hinges()) {
+        const auto edge = between(e0, e1), first = cross(edge, between(e0, o0)), second = cross(between(e0, o1), edge);
+        const double squared = dot(edge, edge);
+        const double doubled = std::sqrt(dot(first, first)) + std::sqrt(dot(second, second));
+        const bool is_flat = dot(first, first) == 0.0 || dot(second, second) == 0.0;
+        *rest++ = is_flat ? 0.0 : std::atan2(dot(cross(first, second), edge) / std::sqrt(squared), dot(first, second));
+        *rest++ = is_flat ? 0.0 : 2.0 * squared / doubled;
+    }
+    return result;
+}
+
 Array<double> area_change(py::handle positions, py::handle triangles, py::handle rest_areas) {
     Array<double> result = areas(positions, triangles);
     const auto count = static_cast<std::size_t>(result.shape(0));

@@ -56,7 +56,9 @@ DeviceLimiter::DeviceLimiter(py::handle triangles, py::handle vertex_count, Addr
 
     const py::gil_scoped_release others_may_run;
     triangle_count_ = corners.size();
-    limiter_.emplace(context_.get(), id, Topology::build(corners, vertex_count_), options);
+    const auto topology = Topology::build(corners, vertex_count_);
+    hinge_count_ = topology->hinge_count();
+    limiter_.emplace(context_.get(), id, topology, options);
 }
 
 Address DeviceLimiter::enqueue(Address queue, const std::map<std::string, Place>& places,
@@ -75,7 +77,8 @@ Address DeviceLimiter::enqueue(Address queue, const std::map<std::string, Place>
                           .regularization = view("regularization"),
                           .rest_shapes = view("rest_shapes"),
                           .stretch_ceilings = view("stretch_ceiling"),
-                          .contacts = view("contacts")};
+                          .contacts = view("contacts"),
+                          .rest_hinges = view("rest_hinges")};
     const py::gil_scoped_release others_may_run;
     const std::lock_guard one_call_at_a_time(mutex_);
     return reinterpret_cast<Address>(

@@ -40,6 +40,7 @@ public:
 
     std::size_t vertex_count() const { return vertex_count_; }
     std::size_t triangle_count() const { return triangle_count_; }
+    std::size_t hinge_count() const { return hinge_count_; }
     std::size_t scratch_bytes() const { return limiter_->scratch_bytes(); }
     py::dict options() const;
 
@@ -47,6 +48,7 @@ private:
     std::mutex mutex_;
     std::size_t vertex_count_;
     std::size_t triangle_count_ = 0;
+    std::size_t hinge_count_ = 0;
     host::ContextHandle context_;
     std::optional<StrainLimiter> limiter_;
 };

@@ -38,6 +38,7 @@ Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle devic
     const py::gil_scoped_release others_may_run;
     triangle_count_ = corners.size();
     const auto topology = Topology::build(corners, vertex_count_);
+    hinge_count_ = topology->hinge_count();
     cl_device_id id = choose_device(number);
     cl_int code = CL_SUCCESS;
     context_ = host::ContextHandle(clCreateContext(nullptr, 1, &id, nullptr, nullptr, &code));
@@ -51,6 +52,7 @@ Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle devic
     rest_areas_ = make_buffer(triangle_count_);
     if (options.regularization_per_triangle) regularization_ = make_buffer(triangle_count_);
     if (options.limits_stretch) rest_shapes_ = make_buffer(4 * triangle_count_);
+    if (options.bends) rest_hinges_ = make_buffer(std::max<std::size_t>(2 * hinge_count_, 1));
     if (options.stretch_ceiling_per_triangle) stretch_ceilings_ = make_buffer(triangle_count_);
     if (options.keeps_contacts) contacts_ = make_buffer(APSLK_CONTACT_SIZE * vertex_count_);
 }
@@ -95,6 +97,7 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
     const auto given_ceilings =
         taken(stretch_ceilings_, "stretch_ceiling", "stretch_ceiling_per_triangle", triangle_count_, 1);
     const auto given_contacts = taken(contacts_, "contacts", "keeps_contacts", vertex_count_, APSLK_CONTACT_SIZE);
+    const auto given_hinges = taken(rest_hinges_, "rest_hinges", "bends", hinge_count_, 2);
     for_each_field(parameter_fields, [&](const auto& field) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>) {
             const auto& list = field.member == &Parameters::stretch_ceiling ? given_ceilings : given_regularization;
@@ -117,6 +120,7 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
         upload(rest_areas_, given_areas.data(), triangle_count_);
         if (given_regularization) upload(regularization_, given_regularization->data(), triangle_count_);
         if (given_shapes) upload(rest_shapes_, given_shapes->data(), 4 * triangle_count_);
+        if (given_hinges && hinge_count_ > 0) upload(rest_hinges_, given_hinges->data(), 2 * hinge_count_);
         if (given_ceilings) upload(stretch_ceilings_, given_ceilings->data(), triangle_count_);
         if (given_contacts) upload(contacts_, given_contacts->data(), APSLK_CONTACT_SIZE * vertex_count_);
         const Buffers buffers{.positions = {positions_.get()},
@@ -126,7 +130,8 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
                               .regularization = {regularization_.get()},
                               .rest_shapes = {rest_shapes_.get()},
                               .stretch_ceilings = {stretch_ceilings_.get()},
-                              .contacts = {contacts_.get()}};
+                              .contacts = {contacts_.get()},
+                              .rest_hinges = {rest_hinges_.get()}};
         const host::EventHandle filtered(limiter_->enqueue(queue_.get(), buffers, parameters));
         const host::EventHandle read(limiter_->read_stats(queue_.get(), {&stats, 1}));
         const cl_event read_event = read.get();

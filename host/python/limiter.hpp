@@ -34,6 +34,7 @@ private:
     std::mutex mutex_;
     std::size_t vertex_count_;
     std::size_t triangle_count_ = 0;
+    std::size_t hinge_count_ = 0;
     host::ContextHandle context_;
     host::QueueHandle queue_;
     std::optional<StrainLimiter> limiter_;
@@ -43,6 +44,7 @@ private:
     host::BufferHandle rest_areas_;
     host::BufferHandle regularization_;    // where Options::regularization_per_triangle
     host::BufferHandle rest_shapes_;       // where Options::limits_stretch
+    host::BufferHandle rest_hinges_;       // where Options::bends
     host::BufferHandle stretch_ceilings_;  // where Options::stretch_ceiling_per_triangle
     host::BufferHandle contacts_;          // where Options::keeps_contacts
 };

@@ -49,6 +49,7 @@ PYBIND11_MODULE(_core, module) {
     py::register_exception_translator(translate);
     module.def("devices", device_dicts);
     module.def("rest_areas", areas, py::arg("positions"), py::arg("triangles"));
+    module.def("rest_hinges", rest_hinges, py::arg("positions"), py::arg("triangles"));
     module.def("rest_shapes", rest_shapes, py::arg("positions"), py::arg("triangles"));
     module.def("area_change", area_change, py::arg("positions"), py::arg("triangles"), py::arg("rest_areas"));
     module.def("default_parameters", [] { return to_dict(Parameters{}, parameter_fields); });
@@ -63,6 +64,7 @@ PYBIND11_MODULE(_core, module) {
         .def("read_stats", &DeviceLimiter::read_stats)
         .def_property_readonly("vertex_count", &DeviceLimiter::vertex_count)
         .def_property_readonly("triangle_count", &DeviceLimiter::triangle_count)
+        .def_property_readonly("hinge_count", &DeviceLimiter::hinge_count)
         .def_property_readonly("options", &DeviceLimiter::options)
         .def_property_readonly("scratch_bytes", &DeviceLimiter::scratch_bytes);
 }

@@ -113,6 +113,7 @@ typedef struct apsl_options {
     int32_t stretch_ceiling_per_triangle; /**< not 0: a stretch_ceilings buffer is given with every call */
     int32_t integrates;                   /**< not 0: a call is a whole time step, positions in and out */
     int32_t keeps_contacts;               /**< not 0: a contacts buffer is given with every call */
+    int32_t bends;                        /**< not 0: hinges resist bending; rest hinges are given with every call */
     uint32_t reserved[7];                 /**< zeros; room for fields to come, so that the size stays */
 } apsl_options;
 
@@ -132,7 +133,9 @@ typedef struct apsl_parameters {
     int32_t most_sub_steps;     /**< >= sub_steps: the device takes more where stretch asks; 0: automatic */
     float acceleration[3];      /**< m/s2, with integrates */
     float damping;              /**< 1/s >= 0, with integrates */
-    uint32_t reserved[8];       /**< zeros; room for fields to come, so that the size stays */
+    float bending;              /**< N m >= 0, with bends: the rigidity of the cloth */
+    int32_t bending_iterations; /**< >= 1, with bends: evaluations of bending a small step */
+    uint32_t reserved[6];       /**< zeros; room for fields to come, so that the size stays */
 } apsl_parameters;
 
 /** apsl::BufferView: 32-bit floats in a buffer of the caller's. */
@@ -155,6 +158,8 @@ typedef struct apsl_buffers {
     apsl_buffer_view contacts;         /**< 8 floats a vertex, [V]: outward unit normal n (zeros: none), offset d, m
                                           (kept at n.x >= d), velocity of the body there, m/s, friction coefficient;
                                           only with keeps_contacts */
+    apsl_buffer_view rest_hinges; /**< 2 floats a hinge, [H]: its angle at rest, rad, and l2/(A0 + A1); an edge of two
+                                     triangles is a hinge, in ascending order of its vertices. Only with bends */
 } apsl_buffers;
 
 /** apsl::Stats: what a call did to one cloth. */
@@ -252,6 +257,12 @@ APSL_API apsl_result apsl_limiter_enqueue_rest_areas(apsl_limiter* limiter, cl_c
 APSL_API apsl_result apsl_limiter_enqueue_rest_shapes(apsl_limiter* limiter, cl_command_queue queue,
                                                       const apsl_buffer_view* rest_positions,
                                                       const apsl_buffer_view* rest_shapes, cl_uint wait_count,
+                                                      const cl_event* wait_list, cl_event* event);
+
+/** Queues apsl_buffers.rest_hinges at rest_positions likewise: 2 floats a hinge. Only with bends. */
+APSL_API apsl_result apsl_limiter_enqueue_rest_hinges(apsl_limiter* limiter, cl_command_queue queue,
+                                                      const apsl_buffer_view* rest_positions,
+                                                      const apsl_buffer_view* rest_hinges, cl_uint wait_count,
                                                       const cl_event* wait_list, cl_event* event);
 
 /** Queues a non-blocking read of the last call's statistics, stats_count the number of cloths. stats must live until

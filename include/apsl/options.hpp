@@ -91,6 +91,9 @@ struct Options {
     /// call. Needs velocities, execution other than one_group, and in every call sub_steps ≥ 2 and a stepping other
     /// than whole_step.
     bool keeps_contacts = false;
+    /// Hinges resist bending, by Parameters::bending (docs/formulation.md, Bending): Buffers::rest_hinges is given with
+    /// every call. Needs integrates, and limits_stretch: without something to hold it in its plane a cloth flows.
+    bool bends = false;
 
     bool operator==(const Options&) const = default;  ///< field by field
 };

@@ -27,6 +27,7 @@ struct Buffers {
     std::span<const Real> contacts = {};          ///< [8V], with Options::keeps_contacts; as apsl::Buffers has them
     /// m, [3V], out: the end of the step, with Options::integrates. May be the memory of `positions`.
     std::span<Real> end_positions = {};
+    std::span<const Real> rest_hinges = {};  ///< [2H], with Options::bends; as apsl::Buffers has them
 };
 
 /// The filter of Algorithm 1 on the CPU, one thread, plain code: what device results are checked against.
@@ -35,9 +36,9 @@ struct Buffers {
 template <class Real>
 class BasicStrainLimiter {
 public:
-    /// Of the options `matrix`, `solver`, `warm_start_sub_steps`, `bound_interval`, `limits_stretch`, `integrates`
-    /// and `keeps_contacts` count here; the others say how a device is used. α is one for each triangle where the
-    /// buffers have one. Throws Error(invalid_argument) as validate() does.
+    /// Of the options `matrix`, `solver`, `warm_start_sub_steps`, `bound_interval`, `limits_stretch`, `integrates`,
+    /// `keeps_contacts` and `bends` count here; the others say how a device is used. α is one for each triangle where
+    /// the buffers have one. Throws Error(invalid_argument) as validate() does.
     explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, const Options& options = {});
     ~BasicStrainLimiter();
     BasicStrainLimiter(BasicStrainLimiter&&) noexcept;  ///< what was moved from may only be assigned to or destroyed
@@ -70,6 +71,10 @@ std::vector<Real> areas(const Topology& topology, std::span<const Real> position
 /// Buffers::rest_shapes of the triangles at the given positions: 1/m, [4T] from [3V]. Zeros for a degenerate triangle.
 template <class Real>
 std::vector<Real> rest_shapes(const Topology& topology, std::span<const Real> positions);
+
+/// Buffers::rest_hinges at the given positions: [2H] from [3V]. Zeros where a triangle of the hinge has no area.
+template <class Real>
+std::vector<Real> rest_hinges(const Topology& topology, std::span<const Real> positions);
 
 /// Lumped inverse masses: each vertex carries a third of its triangles' rest area times density (kg/m²). 0 for isolated
 /// vertices. 1/kg, [V].

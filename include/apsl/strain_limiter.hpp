@@ -52,6 +52,10 @@ struct Buffers {
     /// a time t before the end the plane lies at d − t n·u; Coulomb's coefficient of friction, ≥ 0. A normal of zeros:
     /// nothing to touch. Only with Options::keeps_contacts.
     BufferView contacts = {};
+    /// 2 floats a hinge, [H]: the angle between its triangles at rest, rad, and l²/(A₀ + A₁), l the length of its edge
+    /// and A₀, A₁ the areas of its triangles at rest; a second number of 0 leaves a hinge free, a smaller one makes it
+    /// softer. Hinges in the order of Topology::hinges. Only with Options::bends; see enqueue_rest_hinges.
+    BufferView rest_hinges = {};
 };
 
 APSL_STRUCTS_END
@@ -150,6 +154,11 @@ public:
     /// a triangle has no area. Only with Options::limits_stretch.
     [[nodiscard]] cl_event enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions,
                                                const BufferView& rest_shapes, std::span<const cl_event> wait_list = {});
+
+    /// Queues Buffers::rest_hinges of all hinges at `rest_positions` likewise: 2 floats a hinge, [H]. Zeros where a
+    /// triangle of the hinge has no area. Only with Options::bends.
+    [[nodiscard]] cl_event enqueue_rest_hinges(cl_command_queue queue, const BufferView& rest_positions,
+                                               const BufferView& rest_hinges, std::span<const cl_event> wait_list = {});
 
     /// Queues a non-blocking read of the last call's statistics, one entry for every cloth. `stats` must live until the
     /// returned event completes; the caller releases it. On an out-of-order queue put enqueue's event into wait_list.

@@ -20,6 +20,10 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Vertex pair, smaller index first.
 using VertexPair = std::array<std::uint32_t, 2>;
 
+/// Two triangles that meet at an edge: the edge's vertices, smaller index first, and the vertices opposite it, that of
+/// the triangle with the smaller number first.
+using Hinge = std::array<std::uint32_t, 4>;
+
 /// Corner k of triangle a is the number 3a + k. Edge k of a triangle is the one opposite its corner k.
 using Corner = std::uint32_t;
 
@@ -70,6 +74,12 @@ public:
 
     /// Pattern of G: triangles that share a vertex (consistent) or an edge (printed). Made anew at each call.
     CsrPattern csr_pattern(Matrix matrix) const;
+
+    /// Edges of exactly two triangles: those that bending acts at. At an edge of three or more it does not, for which
+    /// of them belong together is not known.
+    std::size_t hinge_count() const noexcept { return edges_.size() - boundary_edge_count_ - non_manifold_edge_count_; }
+    /// The hinges in the order of their edges, [hinge_count()]. Made anew at each call.
+    std::vector<Hinge> hinges() const;
 
     /// All pairs of vertices exactly two edges apart, ascending. Made anew at each call.
     std::vector<VertexPair> second_ring_pairs() const;

@@ -2,6 +2,7 @@
 #include "finite.hpp"
 #include "reference/check.hpp"
 #include "reference/geometry.hpp"
+#include "reference/hinges.hpp"
 #include "reference/stretch_rows.hpp"
 
 #include <apsl/error.hpp>
@@ -31,6 +32,18 @@ std::vector<Real> rest_shapes(const Topology& topology, std::span<const Real> po
 }
 
 template <class Real>
+std::vector<Real> rest_hinges(const Topology& topology, std::span<const Real> positions) {
+    check_size("positions", positions.size(), 3 * topology.vertex_count());
+    std::vector<Real> result;
+    result.reserve(2 * topology.hinge_count());
+    for (const Hinge& hinge : topology.hinges()) {
+        const RestHinge<Real> rest = rest_hinge(hinge, positions);
+        result.insert(result.end(), {rest.angle, rest.shape});
+    }
+    return result;
+}
+
+template <class Real>
 std::vector<Real> inverse_masses(const Topology& topology, std::span<const Real> rest_areas, Real density) {
     check_size("rest_areas", rest_areas.size(), topology.triangle_count());
     check_values("rest_areas", "triangle", rest_areas, "a finite number >= 0 (m2)",
@@ -51,6 +64,8 @@ template std::vector<double> areas(const Topology&, std::span<const double>);
 template std::vector<float> areas(const Topology&, std::span<const float>);
 template std::vector<double> rest_shapes(const Topology&, std::span<const double>);
 template std::vector<float> rest_shapes(const Topology&, std::span<const float>);
+template std::vector<double> rest_hinges(const Topology&, std::span<const double>);
+template std::vector<float> rest_hinges(const Topology&, std::span<const float>);
 template std::vector<double> inverse_masses(const Topology&, std::span<const double>, double);
 template std::vector<float> inverse_masses(const Topology&, std::span<const float>, float);
 

@@ -5,6 +5,7 @@
 #include "finite.hpp"
 #include "reference/adaptive_regularization.hpp"
 #include "reference/area_change.hpp"
+#include "reference/bending.hpp"
 #include "reference/chebyshev.hpp"
 #include "reference/check.hpp"
 #include "reference/conjugate_gradient.hpp"
@@ -50,6 +51,9 @@ void check(const Topology& topology, const Buffers<Real>& buffers, const Options
     check_size("rest_shapes", buffers.rest_shapes.size(), options.limits_stretch ? 4 * topology.triangle_count() : 0);
     check_size("stretch_ceilings", buffers.stretch_ceilings.size(),
                options.stretch_ceiling_per_triangle ? topology.triangle_count() : 0);
+    check_size("rest_hinges", buffers.rest_hinges.size(), options.bends ? 2 * topology.hinge_count() : 0);
+    check_values("rest_hinges", "number", buffers.rest_hinges, "a finite number (rad, and m2/m2)",
+                 [](Real) { return true; });
     check_values("rest_shapes", "number", buffers.rest_shapes, "a finite number (1/m)", [](Real) { return true; });
     check_values("stretch_ceilings", "triangle", buffers.stretch_ceilings, "0 or a finite number >= 1.01",
                  [](Real ceiling) { return ceiling == Real(0) || ceiling >= Real(APSLK_LEAST_STRETCH_CEILING); });
@@ -106,6 +110,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     TriangleVector<Real> bound;          // B with its margin, [T]
     ChebyshevScratch<Real> chebyshev_scratch;
     StretchLimiting<Real> stretches;  ///< with Options::limits_stretch
+    Bending<Real> bending;            ///< with Options::bends
     Stats stats{};
 
     void predict(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
@@ -165,20 +170,29 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     /// What the areas are off by at the start of the step, and the first of its parts.
     Standing start_small_steps(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
-        const auto time_step = static_cast<Real>(parameters.time_step),
-                   parts = static_cast<Real>(parameters.small_steps);
-        const FreePart<Real> free(parameters);
+        const auto time_step = static_cast<Real>(parameters.time_step);
         std::copy(buffers.positions.begin(), buffers.positions.end(), moved.begin());
         const Standing at_start = standing(buffers);
         if (!at_start.finite()) return at_start;
         start_error = area_errors(buffers);
         if (options.limits_stretch) stretches.hold_excess(moved);
         motion.resize(moved.size());
-        for (std::size_t n = 0; n < moved.size(); ++n) {
-            motion[n] = time_step * free(buffers.velocities[n], n, buffers.inverse_masses);
-            moved[n] = buffers.positions[n] + motion[n] / parts;
-        }
+        for (std::size_t n = 0; n < moved.size(); ++n) motion[n] = time_step * buffers.velocities[n];
+        begin_part(buffers.inverse_masses, parameters);
         return standing(buffers);
+    }
+
+    /// The forces of a small step change the velocities, which move x_j on by it.
+    void begin_part(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
+        const auto time_step = static_cast<Real>(parameters.time_step),
+                   parts = static_cast<Real>(parameters.small_steps);
+        const FreePart<Real> free(parameters);
+        if (options.bends) bending.find_velocity_changes(moved, motion, parameters);
+        for (std::size_t n = 0; n < moved.size(); ++n) {
+            if (options.integrates) motion[n] = time_step * free(motion[n] / time_step, n, inverse_masses);
+            if (options.bends) motion[n] += time_step * bending.velocity_changes()[n];
+            moved[n] += motion[n] / parts;
+        }
     }
 
     /// A − A⁰ at the present geometry; 0 where there is no rest area.
@@ -324,17 +338,12 @@ struct BasicStrainLimiter<Real>::Implementation {
             moved[n] += correction[n];
             total_correction[n] += carried * correction[n];
         }
-        const auto time_step = static_cast<Real>(parameters.time_step), count = static_cast<Real>(parts);
+        const auto count = static_cast<Real>(parts);
         // After the last part only positions are mended.
         if (sub_step < parts)
             for (std::size_t n = 0; n < moved.size(); ++n) motion[n] += count * correction[n];
         if (options.keeps_contacts) keep_contacts(buffers, parameters);
-        if (sub_step + 1 >= parts) return;
-        const FreePart<Real> free(parameters);
-        for (std::size_t n = 0; n < moved.size(); ++n) {
-            if (options.integrates) motion[n] = time_step * free(motion[n] / time_step, n, inverse_masses);
-            moved[n] += motion[n] / count;
-        }
+        if (sub_step + 1 < parts) begin_part(inverse_masses, parameters);
     }
 
     /// Where a whole step ends and with what velocities, `limited` or by acceleration and damping alone; false, and
@@ -383,17 +392,21 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// decides, so that a single triangle does not cost the others their correction. Where the result stands and the
     /// greatest rose, the triangle that has it is named.
     bool is_worse(const Standing& initial, const Standing& change, std::span<const Real> rest_areas) {
-        const bool rose =
-            change.max() > initial.max() || change.rms() > initial.rms() || change.capped_rms() > initial.capped_rms();
+        const double passed = options.bends ? double{APSLK_BENDING_LET_PASS} : 0.0;
+        const double initial_rms = std::max(initial.rms(), passed),
+                     initial_capped_rms = std::max(initial.capped_rms(), passed);
+        const bool rose = change.max() > std::max(initial.max(), passed) || change.rms() > initial_rms ||
+                          change.capped_rms() > initial_capped_rms;
         const bool at_rest = initial.max() <= static_cast<double>(APSLK_AT_REST);
         const bool lets_pass = options.limits_stretch && change.areas.rms < initial.areas.rms;
         const double let_pass = lets_pass ? double{APSLK_GROWTH_LET_PASS} : 1.0;
-        bool worse = rose && (at_rest || change.capped_rms() >= let_pass * initial.capped_rms());
+        bool worse = rose && (at_rest || change.capped_rms() >= let_pass * initial_capped_rms);
         // Where tension goes unstable all of a cloth explodes, and the cap would hide it.
-        if (options.limits_stretch) worse = worse || change.rms() > let_pass * initial.rms();
+        if (options.limits_stretch) worse = worse || change.rms() > let_pass * initial_rms;
         set_standing(worse ? initial : change);
         if (rose && !at_rest) stats.status = Status::worsened;
-        if (!worse && change.max() > initial.max()) name_offender(Offender::triangle, worst_triangle(rest_areas));
+        if (!worse && rose && change.max() > initial.max())
+            name_offender(Offender::triangle, worst_triangle(rest_areas));
         return worse;
     }
 
@@ -442,6 +455,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         predict(buffers, parameters);
         if (!all_finite<Real>(predicted)) return name_offender(Offender::vertex, first_bad_vertex<Real>(predicted));
         if (options.limits_stretch) stretches.start(*topology, buffers, static_cast<Real>(parameters.stretch_ceiling));
+        if (options.bends) bending.start(buffers);
         const Standing initial = standing(buffers);
         if (!initial.finite()) return name_triangle(buffers);
         set_standing(initial);
@@ -455,13 +469,15 @@ struct BasicStrainLimiter<Real>::Implementation {
         Standing change = initial;
         bool all_converged = true;
         const auto target = static_cast<double>(parameters.target_area_change);
+        // Where nothing is to be limited there still is bending.
+        const bool met = !options.bends && initial.max() <= target;
         masses.start(buffers.inverse_masses);
-        if (parts > 0 && initial.max() > target) change = start_small_steps(buffers, parameters);
+        if (parts > 0 && !met) change = start_small_steps(buffers, parameters);
         for (;;) {
             if (!change.finite()) return name_triangle(buffers);
             if (stats.sub_steps == parameters.sub_steps) break;
             // On the way the areas are not those of the end of the step.
-            const bool at_the_end = stats.sub_steps >= parts || initial.max() <= target;
+            const bool at_the_end = stats.sub_steps >= parts || met;
             if (at_the_end && change.max() <= target) break;
 
             const SolveResult<Real> result = solve(buffers, parameters);
@@ -508,6 +524,7 @@ BasicStrainLimiter<Real>::BasicStrainLimiter(std::shared_ptr<const Topology> top
     implementation_->kept.assign(
         options.warm_start_sub_steps,
         TriangleVector<Real>::Zero(static_cast<Eigen::Index>(implementation_->topology->triangle_count())));
+    if (options.bends) implementation_->bending = Bending<Real>(*implementation_->topology);
     implementation_->G = zero_matrix<Real>(pattern);
     implementation_->shared = std::move(pattern.shared);
 }
@@ -532,7 +549,8 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
            bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) +
            bytes(i.scratch.product) + bytes(i.direction_bounds) + bytes(i.bound) +
            bytes(i.chebyshev_scratch.inverse_bound) + bytes(i.chebyshev_scratch.residual) +
-           bytes(i.chebyshev_scratch.step) + bytes(i.chebyshev_scratch.product) + i.stretches.bytes();
+           bytes(i.chebyshev_scratch.step) + bytes(i.chebyshev_scratch.product) + i.stretches.bytes() +
+           i.bending.bytes();
 }
 
 template <class Real>

@@ -18,9 +18,10 @@ AXES = [
     [{"APSLK_POSITION_STRIDE": stride, "APSLK_VELOCITY_STRIDE": stride, "APSLK_POSITION_COMPONENT_STRIDE": component,
       "APSLK_VELOCITY_COMPONENT_STRIDE": component, "APSLK_INVERSE_MASS_STRIDE": mass, "APSLK_POSITIONS_ONLY": positions}
      for stride, component, mass, positions in [(3, 1, 1, 0), (4, 1, 4, 0), (1, 65536, 1, 0), (4, 1, 4, 1)]],
-    # A Chebyshev solve takes one α for all, and a stretch ceiling a Chebyshev solve.
-    [{"APSLK_REGULARIZATION_PER_TRIANGLE": alpha, "APSLK_CHEBYSHEV": chebyshev, "APSLK_LIMITS_STRETCH": stretch}
-     for alpha, chebyshev, stretch in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 1, 1)]],
+    # A Chebyshev solve takes one α for all, a stretch ceiling a Chebyshev solve, and bending a stretch ceiling.
+    [{"APSLK_REGULARIZATION_PER_TRIANGLE": alpha, "APSLK_CHEBYSHEV": chebyshev, "APSLK_LIMITS_STRETCH": stretch,
+      "APSLK_BENDS": bends}
+     for alpha, chebyshev, stretch, bends in [(0, 0, 0, 0), (1, 0, 0, 0), (0, 1, 0, 0), (0, 1, 1, 0), (0, 1, 1, 1)]],
     [{"APSLK_STRETCH_CEILING_PER_TRIANGLE": 0}, {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}],
     [{"APSLK_INTEGRATES": 0}, {"APSLK_INTEGRATES": 1}],
     [{"APSLK_KEEPS_CONTACTS": 0}, {"APSLK_KEEPS_CONTACTS": 1}],

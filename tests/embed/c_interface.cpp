@@ -22,7 +22,8 @@ apsl_buffers c_views(const CallerBuffers& buffers) {
             {v.regularization.buffer, v.regularization.offset},
             {v.rest_shapes.buffer, v.rest_shapes.offset},
             {v.stretch_ceilings.buffer, v.stretch_ceilings.offset},
-            {v.contacts.buffer, v.contacts.offset}};
+            {v.contacts.buffer, v.contacts.offset},
+            {v.rest_hinges.buffer, v.rest_hinges.offset}};
 }
 
 struct CTopology {
@@ -261,6 +262,7 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.limits_stretch == 0);
     CHECK(o.stretch_ceiling_per_triangle == 0);
     CHECK(o.integrates == 0);
+    CHECK(o.bends == 0);
     CHECK(o.keeps_contacts == 0);
     const apsl_parameters p = apsl_default_parameters();
     const Parameters parameters;
@@ -278,6 +280,8 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(p.damping == parameters.damping);
     CHECK(p.stepping == static_cast<int>(parameters.stepping));
     CHECK(p.enabled == 1);
+    CHECK(p.bending == parameters.bending);
+    CHECK(p.bending_iterations == parameters.bending_iterations);
     for (const std::uint32_t word : o.reserved) CHECK(word == 0);
     for (const std::uint32_t word : p.reserved) CHECK(word == 0);
 }

@@ -16,7 +16,7 @@ constexpr std::uint32_t patch_triangles = 37;
 host::Adjacency adjacency_of(std::span<const Cloth> cloths, Matrix matrix) {
     std::vector<std::shared_ptr<const Topology>> topologies;
     for (const Cloth& cloth : cloths) topologies.push_back(cloth.topology);
-    return host::build_adjacency(topologies, matrix, true, patch_triangles);
+    return host::build_adjacency(topologies, matrix, true, true, patch_triangles);
 }
 
 std::vector<std::uint32_t> vertex_places_of(const host::Adjacency& adjacency) {
@@ -131,6 +131,13 @@ std::vector<float> placed(std::span<const Cloth> cloths, std::vector<double> Clo
     return all;
 }
 
+// A mesh may have no hinges, and a buffer is never empty.
+template <class Value>
+std::vector<Value> never_empty(std::vector<Value> values) {
+    if (values.empty()) values.resize(1);
+    return values;
+}
+
 }  // namespace
 
 Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parameters& p, std::uint32_t group_count,
@@ -183,6 +190,16 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       inverse_masses(placed(sources, &Cloth::inverse_masses, 1, {1, array_offset})),
       rest_areas(placed(sources, &Cloth::rest_areas, 1, {1, array_offset})),
       regularization(placed(sources, &Cloth::regularization, 1, {1, array_offset})),
+      hinges(never_empty(adjacency.hinges)),
+      hinge_order(never_empty(adjacency.hinge_order)),
+      hinge_corner_offsets(adjacency.hinge_corner_offsets),
+      hinge_corners(never_empty(adjacency.hinge_corners)),
+      hinge_gradients(poison<cl_float4>(2 * hinges.size())),
+      hinge_moments(poison<float>(hinges.size())),
+      bending_residuals(poison<cl_float4>(adjacency.vertex_count)),
+      bending_steps(poison<cl_float4>(adjacency.vertex_count)),
+      next_bending_steps(poison<cl_float4>(adjacency.vertex_count)),
+      rest_hinges(never_empty(placed(sources, &Cloth::rest_hinges, 2, {2, array_offset}))),
       rest_shapes(placed(sources, &Cloth::rest_shapes, 4, {4, array_offset})),
       stretch_ceilings(placed(sources, &Cloth::stretch_ceilings, 1, {1, array_offset})),
       contacts(placed(sources, &Cloth::contacts, 8, {8, array_offset})) {

@@ -67,6 +67,12 @@ struct Arrays {
     DeviceArray<float> start_errors;                   ///< of measure_step
     DeviceArray<float> ordered_rest, ordered_scaling;  ///< what order_triangle_values makes
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
+    DeviceArray<cl_uint4> hinges;
+    DeviceArray<std::uint32_t> hinge_order, hinge_corner_offsets, hinge_corners;
+    DeviceArray<cl_float4> hinge_gradients;  ///< two a hinge
+    DeviceArray<float> hinge_moments;
+    DeviceArray<cl_float4> bending_residuals, bending_steps, next_bending_steps;
+    DeviceArray<float> rest_hinges;                              ///< the caller's
     DeviceArray<float> rest_shapes, stretch_ceilings, contacts;  ///< the caller's too
 
     std::size_t cloth_count() const { return sources.size(); }

@@ -49,6 +49,9 @@ Cloth make_cloth(const Mesh& mesh, std::uint32_t seed) {
     for (std::size_t n = 0; n < narrower.size(); n += 3) narrower[n] *= 0.9;
     cloth.rest_shapes = reference::rest_shapes<double>(*cloth.topology, narrower);
     round_to_float(cloth.rest_shapes);
+    cloth.rest_hinges = random_numbers(2 * cloth.topology->hinge_count(), 0.0, 2.0, seed + 6);
+    for (std::size_t n = 0; n < cloth.rest_hinges.size(); n += 4) cloth.rest_hinges[n] = 0.0;
+    for (std::size_t n = 1; n < cloth.rest_hinges.size(); n += 12) cloth.rest_hinges[n] = 0.0;
     cloth.stretch_ceilings = random_numbers(cloth.rest_areas.size(), 1.02, 1.2, seed + 5);
     for (std::size_t a = 4; a < cloth.stretch_ceilings.size(); a += 9) cloth.stretch_ceilings[a] = 0.0;
     const std::vector<double> numbers = random_numbers(8 * mesh.vertex_count(), -1.0, 1.0, seed + 6);

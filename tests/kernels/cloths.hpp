@@ -25,6 +25,7 @@ struct Cloth {
     std::vector<double> rest_areas;        ///< m², [T], within a third of the areas
     std::vector<double> regularization;    ///< α, [T], from 1 to 3
     std::vector<double> rest_shapes;       ///< 1/m, [4T], of a cloth a tenth narrower
+    std::vector<double> rest_hinges;       ///< rad and m²/m², [2H], half flat, every sixth free
     std::vector<double> stretch_ceilings;  ///< [T], from 1.02 to 1.2, every ninth 0
     /// [8V], Buffers::contacts: planes up to 0.1 m before and behind `positions`, every fifth vertex without one.
     std::vector<double> contacts;

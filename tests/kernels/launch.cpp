@@ -17,16 +17,16 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
     const auto define = [](const char* macro, std::uint32_t value) {
         return std::string(" -D ") + macro + "=" + std::to_string(value);
     };
-    const std::string options = "-cl-std=CL1.2" + define("APSLK_WORK_GROUP_SIZE", build.work_group_size) +
-                                define("APSLK_POSITION_STRIDE", arrays.position_placement.stride) +
-                                define("APSLK_VELOCITY_STRIDE", arrays.velocity_placement.stride) +
-                                define("APSLK_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
-                                define("APSLK_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
-                                define("APSLK_CHEBYSHEV", build.chebyshev ? 1 : 0) +
-                                define("APSLK_INTEGRATES", build.integrates ? 1 : 0) +
-                                define("APSLK_KEEPS_CONTACTS", build.keeps_contacts ? 1 : 0) +
-                                define("APSLK_LIMITS_STRETCH", build.limits_stretch ? 1 : 0) +
-                                define("APSLK_STRETCH_CEILING_PER_TRIANGLE", build.limits_stretch ? 1 : 0);
+    const std::string options =
+        "-cl-std=CL1.2" + define("APSLK_WORK_GROUP_SIZE", build.work_group_size) +
+        define("APSLK_POSITION_STRIDE", arrays.position_placement.stride) +
+        define("APSLK_VELOCITY_STRIDE", arrays.velocity_placement.stride) +
+        define("APSLK_MATRIX", static_cast<std::uint32_t>(build.matrix)) +
+        define("APSLK_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
+        define("APSLK_CHEBYSHEV", build.chebyshev ? 1 : 0) + define("APSLK_INTEGRATES", build.integrates ? 1 : 0) +
+        define("APSLK_KEEPS_CONTACTS", build.keeps_contacts ? 1 : 0) + define("APSLK_BENDS", build.bends ? 1 : 0) +
+        define("APSLK_LIMITS_STRETCH", build.limits_stretch ? 1 : 0) +
+        define("APSLK_STRETCH_CEILING_PER_TRIANGLE", build.limits_stretch ? 1 : 0);
     // Never released, see transfer_queue() in support/opencl.cpp.
     static auto& programs = *new std::map<std::string, host::ProgramHandle>;
     static auto& kernels = *new std::map<std::string, host::Kernel>;
@@ -55,7 +55,8 @@ Buffers caller(const Arrays& a, const Build& build) {
             .regularization = build.alpha_per_triangle ? view(a.regularization, a.array_offset) : BufferView{},
             .rest_shapes = view(a.rest_shapes, a.array_offset),
             .stretch_ceilings = view(a.stretch_ceilings, a.array_offset),
-            .contacts = view(a.contacts, a.array_offset)};
+            .contacts = view(a.contacts, a.array_offset),
+            .rest_hinges = view(a.rest_hinges, a.array_offset)};
 }
 
 void run(const host::Kernel& kernel, std::uint32_t groups, const Build& build, std::size_t cloths) {
@@ -108,6 +109,22 @@ void rest_shapes(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "rest_areas.cl", "rest_shapes");
     const Buffers buffers = caller(a, build);
     run(arguments::rest_shapes(k, a, buffers.positions, buffers.rest_shapes), a.groups, build, a.cloth_count());
+}
+
+void rest_hinges(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "rest_hinges.cl", "rest_hinges");
+    const Buffers buffers = caller(a, build);
+    run(arguments::rest_hinges(k, a, buffers.positions, buffers.rest_hinges), a.groups, build, a.cloth_count());
+}
+
+void bend_hinges(Arrays& a, const Build& build, int part) {
+    const host::Kernel& k = kernel(a, build, "bend_hinges.cl", "bend_hinges");
+    run(arguments::bend_hinges(k, a, caller(a, build), part), a.groups, build, a.cloth_count());
+}
+
+void bend_vertices(Arrays& a, const Build& build, int part, int iteration) {
+    const host::Kernel& k = kernel(a, build, "bend_hinges.cl", "bend_vertices");
+    run(arguments::bend_vertices(k, a, part, iteration), a.groups, build, a.cloth_count());
 }
 
 void order_stretch_limits(Arrays& a, const Build& build) {

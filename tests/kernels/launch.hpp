@@ -19,6 +19,7 @@ struct Build {
     bool limits_stretch = false;  ///< with a ceiling of its own for each triangle
     bool integrates = false;
     bool keeps_contacts = false;
+    bool bends = false;
 };
 
 /// 1, 32, 64 and 256 work-items a group, as far as the device goes.
@@ -35,6 +36,11 @@ void predict_positions(Arrays& arrays, const Build& build);
 void rest_areas(Arrays& arrays, const Build& build);
 /// Likewise into the caller's rest shapes.
 void rest_shapes(Arrays& arrays, const Build& build);
+/// Likewise into the caller's rest hinges.
+void rest_hinges(Arrays& arrays, const Build& build);
+/// Of part `part` of the small steps.
+void bend_hinges(Arrays& arrays, const Build& build, int part);
+void bend_vertices(Arrays& arrays, const Build& build, int part, int iteration);
 void order_triangle_values(Arrays& arrays, const Build& build);
 void order_stretch_limits(Arrays& arrays, const Build& build);
 void assemble_gradients(Arrays& arrays, const Build& build, int sub_step = 0, bool for_solve = true);

@@ -138,6 +138,22 @@ class WholeStep(unittest.TestCase):
         with self.assertRaisesRegex(apsl.Error, "contacts: got nothing"):
             made.step(CORNER, velocities, [2, 2, 2], [0.5])
 
+    def test_a_fold_that_was_opened_closes_again(self):
+        pair = [[0, 1, 2], [1, 0, 3]]
+        fold = [[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [0, 0.5, 1]]
+        hinges = apsl.rest_hinges(fold, pair)
+        np.testing.assert_allclose(hinges, [[np.pi / 2, 1]], rtol=1e-12)
+        made = limiter(pair, 4, integrates=True, limits_stretch=True, bends=True)
+        rest = {"rest_shapes": apsl.rest_shapes(fold, pair), "rest_hinges": hinges}
+        positions, velocities = [*fold[:3], [-1, 0.5, 0]], np.zeros((4, 3))
+        for _ in range(240):
+            positions, velocities, stats = made.step(positions, velocities, [10] * 4, [0.5, 0.5], time_step=1 / 60,
+                                                     stretch_ceiling=1.05, damping=4, bending=0.1, **rest)
+        self.assertEqual(stats.status, "ok")
+        np.testing.assert_allclose(apsl.rest_hinges(positions, pair)[0, 0], np.pi / 2, atol=0.01)
+        with self.assertRaisesRegex(apsl.Error, "rest_hinges: got nothing"):
+            made.step(fold, velocities, [10] * 4, [0.5, 0.5], rest_shapes=rest["rest_shapes"])
+
     def test_each_kind_of_limiter_has_its_call(self):
         arrays = (CORNER, np.zeros((3, 3)), [0, 2, 0], [0.5])
         with self.assertRaisesRegex(apsl.Error, "step: .*expected a call of limit"):

@@ -37,6 +37,7 @@ std::vector<float> placed(std::span<const MovingCloth> cloths, std::vector<doubl
     for (const MovingCloth& cloth : cloths)
         joined.insert(joined.end(), (cloth.*numbers).begin(), (cloth.*numbers).end());
     const std::size_t count = joined.size() / layout.width;
+    if (count == 0) return poison<float>(offset + 1);
     std::vector<float> all = poison<float>(offset + layout.place(count - 1, layout.width - 1) + 1);
     for (std::size_t n = 0; n < joined.size(); ++n)
         all[offset + layout.place(n / layout.width, n % layout.width)] = static_cast<float>(joined[n]);
@@ -82,6 +83,8 @@ MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed) {
     round_to_float(cloth.regularization);
     cloth.rest_shapes = reference::rest_shapes<double>(*cloth.topology, mesh.positions);
     round_to_float(cloth.rest_shapes);
+    cloth.rest_hinges = reference::rest_hinges<double>(*cloth.topology, mesh.positions);
+    round_to_float(cloth.rest_hinges);
     for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
         cloth.stretch_ceilings.push_back(a % 9 == 4 ? 0.0 : number(1.02, 1.2));
     round_to_float(cloth.stretch_ceilings);
@@ -121,7 +124,8 @@ CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options&
       regularization(placed(cloths, &MovingCloth::regularization, {1, 1}, offset)),
       rest_shapes(placed(cloths, &MovingCloth::rest_shapes, {4, 4}, offset)),
       stretch_ceilings(placed(cloths, &MovingCloth::stretch_ceilings, {1, 1}, offset)),
-      contacts(placed(cloths, &MovingCloth::contacts, {8, 8}, offset)) {
+      contacts(placed(cloths, &MovingCloth::contacts, {8, 8}, offset)),
+      rest_hinges(placed(cloths, &MovingCloth::rest_hinges, {2, 2}, offset)) {
 }
 
 Buffers CallerBuffers::views() const {
@@ -135,6 +139,7 @@ Buffers CallerBuffers::views() const {
     if (options.limits_stretch) views.rest_shapes = {rest_shapes.get(), bytes};
     if (options.stretch_ceiling_per_triangle) views.stretch_ceilings = {stretch_ceilings.get(), bytes};
     if (options.keeps_contacts) views.contacts = {contacts.get(), bytes};
+    if (options.bends) views.rest_hinges = {rest_hinges.get(), bytes};
     return views;
 }
 
@@ -157,8 +162,8 @@ std::vector<float> without_gaps(const std::vector<float>& all, const Layout& lay
 }  // namespace
 
 std::vector<float> CallerBuffers::read_velocities() const {
-    for (const auto* array :
-         {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes, &stretch_ceilings, &contacts})
+    for (const auto* array : {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes,
+                              &stretch_ceilings, &contacts, &rest_hinges})
         array->read();
     return without_gaps(velocities.read(), layout_of_velocities(options), offset, vertex_count, "velocities");
 }

@@ -23,6 +23,7 @@ struct MovingCloth {
     std::vector<double> rest_areas;        ///< m², [T]
     std::vector<double> regularization;    ///< α, [T]
     std::vector<double> rest_shapes;       ///< 1/m, [4T]
+    std::vector<double> rest_hinges;       ///< rad and m²/m², [2H]
     std::vector<double> stretch_ceilings;  ///< [T], from 1.02 to 1.2, every ninth 0
     /// [8V], Buffers::contacts: planes that about half of the vertices end a step behind, a third of an edge deep at
     /// most, every fifth vertex without one.
@@ -44,7 +45,7 @@ struct CallerBuffers {
     std::size_t offset;
     std::size_t vertex_count;
     DeviceArray<float> positions, velocities, inverse_masses, rest_areas, regularization, rest_shapes, stretch_ceilings,
-        contacts;
+        contacts, rest_hinges;
 
     Buffers views() const;
     /// [3V] of all cloths, without stride and offset. Checks the guard bands of every buffer.

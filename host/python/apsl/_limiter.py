@@ -88,15 +88,15 @@ class StrainLimiter:
 
         queue: a pyopencl.CommandQueue of the context and device. Arrays: what limit() takes, 32-bit floats laid out as
         the options say, each a pyopencl.array.Array, a pyopencl.Buffer, or a pair of a buffer and an offset in bytes;
-        to be kept until the event completes. So are `rest_shapes`, `contacts`, and where there is one for
-        each triangle `regularization` and `stretch_ceiling`. velocities: None with positions_only. wait_for: a list of events that
+        to be kept until the event completes. So are `rest_shapes`, `contacts` and `rest_hinges`, and where there is one
+        for each triangle `regularization` and `stretch_ceiling`. velocities: None with positions_only. wait_for: a list of events that
         the call starts after, besides those of the Arrays. In place of any OpenCL object its handle as an integer.
         Returns a pyopencl.Event, or where pyopencl is not imported the handle of an event, which the caller releases.
         Raises Error for what does not fit, before anything is queued.
         """
         made = self._without_copies("enqueue")
         options = made.options
-        layouts = _layouts(made.vertex_count, made.triangle_count, options)
+        layouts = _layouts(made.vertex_count, made.triangle_count, made.hinge_count, options)
         given: dict[str, Any] = {"positions": positions, "velocities": velocities, "inverse_masses": inverse_masses,
                                  "rest_areas": rest_areas}
         if options["positions_only"] and velocities is None:
@@ -147,7 +147,8 @@ class StrainLimiter:
 
 
 _optional_arrays = {"regularization": "regularization_per_triangle", "rest_shapes": "limits_stretch",
-                    "stretch_ceiling": "stretch_ceiling_per_triangle", "contacts": "keeps_contacts"}
+                    "stretch_ceiling": "stretch_ceiling_per_triangle", "contacts": "keeps_contacts",
+                    "rest_hinges": "bends"}
 
 
 def _check_arrays(call: str, options: dict[str, Any], settings: dict[str, Any]) -> None:
@@ -160,7 +161,7 @@ def _check_arrays(call: str, options: dict[str, Any], settings: dict[str, Any]) 
             raise _opencl.refuse(name, "nothing", f"an array (limiter made with {option})")
 
 
-def _layouts(vertices: int, triangles: int,
+def _layouts(vertices: int, triangles: int, hinges: int,
              options: dict[str, Any]) -> dict[str, tuple[tuple[int, ...], tuple[int, ...]]]:
     """Shape and strides in bytes of each array."""
     def vectors(of: str) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -169,4 +170,5 @@ def _layouts(vertices: int, triangles: int,
     numbers = (triangles,), (4,)
     return {"positions": vectors("position"), "velocities": vectors("velocity"),
             "inverse_masses": ((vertices,), (4 * options["inverse_mass_stride"],)), "rest_areas": numbers,
-            "regularization": numbers, "rest_shapes": ((triangles, 4), (16, 4)), "stretch_ceiling": numbers, "contacts": ((vertices, 8), (32, 4))}
+            "regularization": numbers, "rest_shapes": ((triangles, 4), (16, 4)), "stretch_ceiling": numbers,
+            "contacts": ((vertices, 8), (32, 4)), "rest_hinges": ((hinges, 2), (8, 4))}

@@ -27,6 +27,16 @@ def rest_shapes(positions: npt.ArrayLike, triangles: npt.ArrayLike) -> npt.NDArr
     return _core.rest_shapes(positions, triangles)
 
 
+def rest_hinges(positions: npt.ArrayLike, triangles: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """[H, 2]: what the cloth's hinges are where it is at rest, for a limiter with bends.
+
+    A hinge is an edge of two triangles; hinges are in ascending order of its vertices. The first number is the angle
+    between the triangles, rad, the second l²/(A₀ + A₁) of edge and triangles; zeros, which let it bend freely, where a
+    triangle has no area. positions: m, [V, 3]. triangles: [T, 3].
+    """
+    return _core.rest_hinges(positions, triangles)
+
+
 def area_change(positions: npt.ArrayLike, triangles: npt.ArrayLike,
                 rest_areas: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """|A − A⁰| / A⁰ of each triangle, [T], 0 where A⁰ ≤ 0.

@@ -28,6 +28,7 @@ class Options(TypedDict, total=False):
     stretch_ceiling_per_triangle: bool  # `stretch_ceiling` is then an array [T] in every call
     integrates: bool  # a call is a whole time step: it returns positions too
     keeps_contacts: bool  # `contacts` are then given in every call
+    bends: bool  # hinges resist bending: `rest_hinges` are then given in every call, and `bending` counts
 
 
 class DeviceOptions(Options, total=False):
@@ -63,6 +64,9 @@ class Parameters(TypedDict, total=False):
     contacts: Union[npt.ArrayLike, DeviceArray]
     acceleration: Sequence[float]  # m/s², three, with integrates
     damping: float  # 1/s, ≥ 0, with integrates
+    rest_hinges: Union[npt.ArrayLike, DeviceArray]  # [H, 2], with bends: see rest_hinges()
+    bending: float  # N·m, ≥ 0, with bends: the cloth's rigidity
+    bending_iterations: int  # ≥ 1, with bends: evaluations a small step
     stepping: Literal["automatic", "whole_step", "small_steps"]  # automatic: small from 20 sub-steps up
     enabled: bool  # False: the velocities come back as they were, with status "off"
 
