@@ -114,7 +114,7 @@ typedef struct apsl_options {
     int32_t integrates;                   /**< not 0: a call is a whole time step, positions in and out */
     int32_t keeps_contacts;               /**< not 0: a contacts buffer is given with every call */
     int32_t bends;                        /**< not 0: hinges resist bending; rest hinges are given with every call */
-    uint32_t reserved[7];                 /**< zeros; room for fields to come, so that the size stays */
+    uint32_t reserved[6];                 /**< zeros; room for fields to come, so that the size stays */
 } apsl_options;
 
 /** apsl::Parameters: what may change from call to call. Begin with apsl_default_parameters(). */

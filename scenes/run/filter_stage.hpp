@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "run/bending_iterations.hpp"
 #include "run/custom_filter.hpp"
 #include "run/float_range.hpp"
 #include "run/input_error.hpp"
@@ -36,9 +37,11 @@ inline bool keeps_contacts(const FilterStage& stage) {
     return false;
 }
 
-/// The scene's strain limiting, with contact in the call where a stretch ceiling would otherwise be lost to it.
-inline StrainLimiting with_contacts(const Scene& scene) {
+/// The scene's strain limiting for its cloth: with contact in the call where a stretch ceiling would otherwise be lost
+/// to it, and with as many evaluations of bending as the mesh needs.
+inline StrainLimiting limiting_of(const Scene& scene, const ClothState& cloth) {
     StrainLimiting limiting = scene.strain_limiting.value();
+    if (limiting.options.bends) limiting.parameters.bending_iterations = bending_iterations(cloth, limiting.parameters);
     const Parameters& parameters = limiting.parameters;
     if (limiting.options.limits_stretch && parameters.stepping != Stepping::whole_step && parameters.sub_steps >= 2)
         limiting.options.keeps_contacts = !scene.colliders.empty();
@@ -51,7 +54,7 @@ inline FilterStage make_filter_stage(const Scene& scene, const ClothState& cloth
     if (!scene.strain_limiting) return std::monostate{};
     if (backend == Backend::opencl)
         if (const auto text = beyond_float_range(cloth)) throw InputError(scene.file + ": " + *text);
-    const StrainLimiting limiting = with_contacts(scene);
+    const StrainLimiting limiting = limiting_of(scene, cloth);
     const bool whole_step = limiting.options.integrates;
     if (backend == Backend::reference) {
         if (whole_step) return ReferenceStep(cloth, limiting);

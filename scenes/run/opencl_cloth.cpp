@@ -4,6 +4,8 @@
 #include "run/check_opencl.hpp"
 #include "run/rest_shapes.hpp"
 
+#include <apsl/reference.hpp>
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -68,6 +70,9 @@ OpenClCloth::OpenClCloth(const OpenClDevice& device, const ClothState& cloth, co
     rest_areas_ = make_buffer(to_float(cloth.rest_areas), "rest areas");
     if (!settings.regularization.empty()) regularization_ = make_buffer(settings.regularization, "regularization");
     if (settings.options.limits_stretch) rest_shapes_ = make_buffer(to_float(rest_shapes(cloth)), "rest shapes");
+    if (settings.options.bends)
+        rest_hinges_ =
+            make_buffer(to_float(reference::rest_hinges<double>(*cloth.topology, cloth.rest_positions)), "rest hinges");
     if (!settings.stretch_ceilings.empty())
         stretch_ceilings_ = make_buffer(settings.stretch_ceilings, "stretch ceilings");
     limiter_.set_profiling(profile);
@@ -95,7 +100,8 @@ void OpenClCloth::queue_call(cl_mem contacts) {
                           .regularization = {regularization_.get()},
                           .rest_shapes = {rest_shapes_.get()},
                           .stretch_ceilings = {stretch_ceilings_.get()},
-                          .contacts = {contacts}};
+                          .contacts = {contacts},
+                          .rest_hinges = {rest_hinges_.get()}};
     const host::EventHandle called(limiter_.enqueue(queue_.get(), buffers, parameters_));
 }
 

@@ -65,6 +65,7 @@ private:
     host::BufferHandle regularization_;
     host::BufferHandle rest_shapes_;
     host::BufferHandle stretch_ceilings_;
+    host::BufferHandle rest_hinges_;
     std::vector<std::pair<std::string, host::EventHandle>> launches_;  // only with profile_
     Stats stats_{};
 };

@@ -125,12 +125,14 @@ Integrator parse_integrator(SceneObject object) {
     } else if (kind == "stand_alone") {
         StandAloneIntegrator stand_alone;
         stand_alone.damping = settings.number("damping", stand_alone.damping, Range::at_least(0.0));
+        stand_alone.bending = settings.number("bending", stand_alone.bending, Range::at_least(0.0));
         // What it had before, and no key of it now.
         if (settings.value().json->contains("bend_stiffness"))
             SceneObject(settings.value())
                 .find("bend_stiffness")
                 .fail(
-                    "a stand-alone cloth has no springs, those in front of the filter are integrator.bending_springs");
+                    "a stand-alone cloth has no springs, expected bending (N·m); those in front of the filter are "
+                    "integrator.bending_springs");
         integrator = stand_alone;
     }
     settings.refuse_other_keys();
@@ -218,6 +220,8 @@ void make_stand_alone(Scene& scene, const SceneValue& integrator) {
     limiting.options.keeps_contacts = !scene.colliders.empty();
     for (std::size_t k = 0; k < 3; ++k) limiting.parameters.acceleration[k] = static_cast<float>(scene.gravity[k]);
     limiting.parameters.damping = static_cast<float>(stand_alone->damping);
+    limiting.parameters.bending = static_cast<float>(stand_alone->bending);
+    limiting.options.bends = stand_alone->bending > 0.0;
     try {
         validate(limiting.options, limiting.parameters);
     } catch (const Error& error) {

@@ -12,6 +12,7 @@ ReferenceFilter::ReferenceFilter(const ClothState& cloth, const StrainLimiting& 
       stretch_ceilings_(settings.stretch_ceilings.begin(), settings.stretch_ceilings.end()),
       limiter_(cloth.topology, settings.options) {
     if (settings.options.limits_stretch) rest_shapes_ = rest_shapes(cloth);
+    if (settings.options.bends) rest_hinges_ = reference::rest_hinges<double>(*cloth.topology, cloth.rest_positions);
 }
 
 Stats ReferenceFilter::filter(ClothState& cloth, std::span<const ColliderStep> colliders) {
@@ -30,7 +31,8 @@ Stats ReferenceFilter::call(ClothState& cloth, std::span<double> end_positions, 
                       .rest_shapes = rest_shapes_,
                       .stretch_ceilings = stretch_ceilings_,
                       .contacts = contacts,
-                      .end_positions = end_positions},
+                      .end_positions = end_positions,
+                      .rest_hinges = rest_hinges_},
                      parameters_);
     return limiter_.read_stats();
 }

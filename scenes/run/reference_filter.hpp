@@ -35,6 +35,7 @@ private:
     std::vector<double> regularization_;    // [T] or empty
     std::vector<double> rest_shapes_;       // [4T] or empty
     std::vector<double> stretch_ceilings_;  // [T] or empty
+    std::vector<double> rest_hinges_;       // [2H] or empty
     reference::StrainLimiter limiter_;
 };
 

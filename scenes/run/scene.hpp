@@ -78,9 +78,11 @@ struct BendingSpringsIntegrator {
 };
 
 /// The limiter takes whole steps, with nothing in front of it: StrainLimiting::options integrates then, with gravity
-/// and this damping among its parameters, and keeps contacts where there are colliders.
+/// and this damping among its parameters, keeps contacts where there are colliders, and bends where there is a
+/// rigidity.
 struct StandAloneIntegrator {
     double damping = 0.5;  ///< 1/s, ≥ 0
+    double bending = 0.0;  ///< N·m, ≥ 0
 };
 
 using Integrator =

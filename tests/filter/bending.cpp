@@ -118,7 +118,7 @@ TEST_CASE("bending: two cloths in one limiter, one stiff, are each as in a limit
 }
 
 TEST_CASE("bending: a clamped strip hangs as far whatever the steps", "[filter][bending]") {
-    // Of the reference with 240 sub-steps.
+    // Of the reference with 120 sub-steps.
     for (const auto& [rigidity, converged] : {std::pair{1e-1f, 0.1843}, {1e-2f, 0.4478}, {1e-3f, 0.4949}}) {
         CAPTURE(rigidity);
         CHECK(rest_of_cantilever(rigidity, 10, 1.0f / 30.0f, 40) == Approx(converged).epsilon(0.03));

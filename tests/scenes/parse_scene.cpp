@@ -83,6 +83,11 @@ TEST_CASE("a stand-alone scene is whole steps under its gravity and damping") {
     CHECK(scene.strain_limiting->options.integrates);
     CHECK(scene.strain_limiting->parameters.acceleration == std::array<float, 3>{1.0f, -2.0f, 3.0f});
     CHECK(scene.strain_limiting->parameters.damping == 0.25f);
+    CHECK(!scene.strain_limiting->options.bends);
+    const Scene stiff = parse(R"({"mesh": {"grid": {}}, "integrator": {"stand_alone": {"bending": 0.5}},
+                                  "strain_limiting": {"stretch_ceiling": 1.1}})");
+    CHECK(stiff.strain_limiting->options.bends);
+    CHECK(stiff.strain_limiting->parameters.bending == 0.5f);
     const Scene filtered = parse(R"({"mesh": {"grid": {}}, "strain_limiting": {}})");
     CHECK(!filtered.strain_limiting->options.integrates);
     CHECK(filtered.strain_limiting->parameters.acceleration == std::array<float, 3>{});
@@ -269,10 +274,16 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("integrator": {"implicit_springs": {"stretch_stiffness": -1}})",
          "integrator.implicit_springs.stretch_stiffness: expected a number ≥ 0, got -1"},
         {R"("integrator": {"stand_alone": {"stretch_stiffness": 1}})",
-         "integrator.stand_alone.stretch_stiffness: unknown key, expected damping"},
+         "integrator.stand_alone.stretch_stiffness: unknown key, expected damping, bending"},
         {R"("integrator": {"stand_alone": {"bend_stiffness": 200}}, "strain_limiting": {})",
-         "integrator.stand_alone.bend_stiffness: a stand-alone cloth has no springs, those in front of the filter are "
-         "integrator.bending_springs"},
+         "integrator.stand_alone.bend_stiffness: a stand-alone cloth has no springs, expected bending (N·m); those in "
+         "front of the filter are integrator.bending_springs"},
+        {R"("integrator": {"stand_alone": {"bending": -1}}, "strain_limiting": {})",
+         "integrator.stand_alone.bending: expected a number ≥ 0, got -1"},
+        {R"("integrator": {"stand_alone": {"bending": 1e-4}}, "strain_limiting": {})",
+         "integrator: stand_alone: bends is on, which needs limits_stretch: areas and bending alone let a cloth flow "
+         "in "
+         "its plane"},
         {R"("integrator": {"stand_alone": {"damping": -1}}, "strain_limiting": {})",
          "integrator.stand_alone.damping: expected a number ≥ 0, got -1"},
         {R"("integrator": {"stand_alone": {}})",

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 using namespace apsl;
 using namespace apsl::scenes;
@@ -107,6 +108,26 @@ TEST_CASE("stand-alone: the device's own pinned corner goes with the motion too"
     const Run run_led = run(parse(led), Backend::opencl, 12);
     CHECK(run_led.frames.back().max_edge_stretch < 1.12);
     CHECK(run_led.frames.back().min_edge_stretch > 0.88);
+}
+
+TEST_CASE("stand-alone: a clamped strip hangs as far as its rigidity lets it, on the device and by the reference") {
+    // Free by 0.5 m. By the converged solution its tip is 0.1842 and 0.4478 m below the clamp, without bending 0.505.
+    for (const auto& [bending, tip, iterations] : {std::tuple{0.1, 0.1842, 6}, std::tuple{0.01, 0.4478, 2}}) {
+        const Scene scene = parse_scene(
+            nlohmann::json::parse(
+                R"({"mesh": {"grid": {"vertices": [22, 5], "size": [0.525, 0.1], "diagonals": "uniform"}}, "density": 0.2,
+                "pins": [{"box": {"max": [-0.23, 1, 1]}}], "time_step": 0.016666667,
+                "integrator": {"stand_alone": {"damping": 2, "bending": )" +
+                std::to_string(bending) + R"(}}, "strain_limiting": {"stretch_ceiling": 1.01, "sub_steps": 30}})"),
+            "scene.json");
+        const SceneCloth cloth = make_scene_cloth(scene);
+        CHECK(limiting_of(scene, cloth.state).parameters.bending_iterations == iterations);
+        for (const Backend backend : {Backend::opencl, Backend::reference}) {
+            const Run result = run(scene, backend, 240);
+            CAPTURE(bending, backend == Backend::opencl);
+            CHECK(-result.cloth.positions[3 * (2 * 22 + 21) + 1] == Approx(tip).epsilon(0.03));
+        }
+    }
 }
 
 TEST_CASE("stand-alone: far from the origin the device does bit for bit what it does there") {
