@@ -2,11 +2,12 @@
 #include "program.hpp"
 
 #include "kernel_sources.hpp"
-#include "opencl_error.hpp"
+#include "opencl_info.hpp"
 
 #include <apsl/error.hpp>
 
 #include <algorithm>
+#include <cstdio>
 #include <functional>
 #include <set>
 
@@ -49,6 +50,18 @@ std::string first_error(const std::string& log) {
     if (at == std::string::npos) return "see the build log";
     const std::size_t begin = log.rfind('\n', at) == std::string::npos ? 0 : log.rfind('\n', at) + 1;
     return log.substr(begin, log.find('\n', at) - begin);
+}
+
+// pocl 6 that is asked for a binary compiles every kernel anew, for groups of any size. From LLVM 18 on a check within
+// that ends the process over some kernels (pocl issue 1608); which ones, nothing tells beforehand.
+bool asking_may_abort(cl_device_id device) {
+    constexpr const char* doing = "asking for the version of the platform";
+    const auto platform = info<cl_platform_id>(clGetDeviceInfo, device, CL_DEVICE_PLATFORM, doing);
+    const std::string version = info_text(clGetPlatformInfo, platform, CL_PLATFORM_VERSION, doing);
+    const std::size_t at = version.find(" LLVM ");
+    int llvm = 0;
+    return version.find(" PoCL 6.") != std::string::npos && at != std::string::npos &&
+           std::sscanf(version.c_str() + at, " LLVM %d", &llvm) == 1 && llvm >= 18;
 }
 
 }  // namespace
@@ -94,6 +107,7 @@ ProgramHandle load_program(cl_context context, cl_device_id device, std::span<co
 }
 
 std::vector<std::byte> driver_binary(cl_program program, cl_device_id device) {
+    if (asking_may_abort(device)) return {};
     // The program belongs to all devices of the context, built for this one alone.
     constexpr const char* doing = "asking the kernel program for its binary";
     cl_uint count = 0;

@@ -23,7 +23,8 @@ ProgramHandle build_program(cl_context context, cl_device_id device, const std::
 ProgramHandle load_program(cl_context context, cl_device_id device, std::span<const std::byte> driver_binary,
                            const std::string& build_options);
 
-/// The driver's bytes of a built program for the device; none where the driver keeps none.
+/// The driver's bytes of a built program for the device; none where the driver keeps none, or where asking for them
+/// might end the process.
 std::vector<std::byte> driver_binary(cl_program program, cl_device_id device);
 
 }  // namespace apsl::host

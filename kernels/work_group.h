@@ -105,18 +105,25 @@ APSLK_INLINE __global float* partials_of(__global float* partials, uint kind, ui
     return partials + ((uint)get_group_id(1) * APSLK_PARTIAL_KINDS + kind) * groups;
 }
 
-// Sum of a kind's partial results. Every group does it anew: cheaper than a launch in between.
+// Sum of a kind's partial results. Every group does it anew: cheaper than a launch in between. All work-items go round
+// equally often: where they need not, pocl 6's LLVM 18 crashes over some kernels in groups of 2.
 APSLK_INLINE float sum_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
     __global const float* p = partials_of(partials, kind, groups);
     float sum = 0.0f;
-    for (uint g = (uint)get_local_id(0); g < groups; g += APSLK_WORK_GROUP_SIZE) sum += p[g];
+    for (uint first = 0; first < groups; first += APSLK_WORK_GROUP_SIZE) {
+        const uint g = first + (uint)get_local_id(0);
+        if (g < groups) sum += p[g];
+    }
     return group_sum(sum, scratch);
 }
 
 APSLK_INLINE float max_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
     __global const float* p = partials_of(partials, kind, groups);
     float greatest = 0.0f;
-    for (uint g = (uint)get_local_id(0); g < groups; g += APSLK_WORK_GROUP_SIZE) greatest = fmax(greatest, p[g]);
+    for (uint first = 0; first < groups; first += APSLK_WORK_GROUP_SIZE) {
+        const uint g = first + (uint)get_local_id(0);
+        if (g < groups) greatest = fmax(greatest, p[g]);
+    }
     return group_max(greatest, scratch);
 }
 

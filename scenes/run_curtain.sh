@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up a Debian 12 machine (as root, or with sudo), builds the program, runs the curtain without and with the filter,
+# Sets up a Debian 12 or 13 machine (as root, or with sudo), builds the program, runs the curtain without and with the filter,
 # and draws both. Leaves out/curtain: report.json, the frames for ParaView and Blender, side_by_side.png.
 # FRAMES=N runs fewer or more frames than the scene's 180, at least 31: the picture is of frame 30.
 set -euo pipefail

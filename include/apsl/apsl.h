@@ -233,8 +233,9 @@ APSL_API void apsl_limiter_destroy(apsl_limiter* limiter);
 /** Device memory it holds; 0 for null. */
 APSL_API size_t apsl_limiter_scratch_bytes(const apsl_limiter* limiter);
 
-/** The compiled program; *size is its bytes, 0 where the driver gives none. Where binary is null only the size is asked
- * for; else capacity bytes are there for it, at least *size. Best asked for after a call has completed. */
+/** The compiled program; *size is its bytes, 0 where the driver gives none and on pocl 6 with LLVM 18, which may abort
+ * the process over it and is not asked. Where binary is null only the size is asked for; else capacity bytes are there
+ * for it, at least *size. Best asked for after a call has completed. */
 APSL_API apsl_result apsl_limiter_program_binary(const apsl_limiter* limiter, void* binary, size_t capacity,
                                                  size_t* size);
 /** An apsl_program_binary_use; none given for null. */

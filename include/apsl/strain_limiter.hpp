@@ -128,7 +128,8 @@ public:
     /// The compiled program, for the constructor of a later limiter with the same kernels, options, largest patch,
     /// device and driver. May take as long as compiling did. Best asked for after a call has completed, for some
     /// drivers compile at the first launch, and with no call pending, of this limiter or another of the same program:
-    /// pocl 3.1 may abort the process over one. Empty where the driver gives none.
+    /// pocl 3.1 may abort the process over one. Empty where the driver gives none, and on pocl 6 with LLVM 18, which is
+    /// not asked: it may abort the process whenever it is.
     std::vector<std::byte> program_binary() const;
     /// What became of the binary given to the constructor; none_given after a rebuild() that compiled.
     ProgramBinaryUse program_binary_use() const noexcept;

@@ -19,8 +19,9 @@ PROJECT = Path(__file__).resolve().parents[2]
 
 
 def device_libraries():
-    """Where Debian puts AMD's device libraries, on any architecture."""
-    return Path(next(iter(glob.glob("/usr/lib/*/amdgcn/bitcode")), "."))
+    """Where Debian puts AMD's device libraries, on any architecture: Debian 12, or 13 in a folder of a clang's."""
+    places = ("/usr/lib/*/amdgcn/bitcode", "/usr/lib/llvm-*/lib/clang/*/amdgcn/bitcode")
+    return Path(next((folder for place in places for folder in sorted(glob.glob(place))), "."))
 
 
 def require_compiler(parser, arguments):
@@ -28,7 +29,7 @@ def require_compiler(parser, arguments):
     if not shutil.which(arguments.clang):
         parser.error(f"{arguments.clang} was not found, expected clang 19 with the AMDGPU target (Debian: clang-19)")
     if not (arguments.device_libraries / "ocml.bc").exists():
-        parser.error("AMD's device libraries were not found, expected ocml.bc (Debian: rocm-device-libs)")
+        parser.error("AMD's device libraries were not found, expected ocml.bc (Debian 12: rocm-device-libs, 13: rocm-device-libs-17)")
 
 
 def parse_arguments():

@@ -136,8 +136,8 @@ class GpuScript(unittest.TestCase):
             broken.write_text("""#!/bin/bash
 case "$*" in
   *--list-test-names-only*) printf '%s\\n' 'one, with a comma' 'two [in brackets]' three;;
-  'one\\, with a comma --warn NoTests') echo 'All tests passed (1 assertion in 1 test case)' ;;
-  'two \\[in brackets\\] --warn NoTests') echo 'what it said'; exit 1 ;;
+  'one\\, with a comma') echo 'All tests passed (1 assertion in 1 test case)' ;;
+  'two \\[in brackets\\]') echo 'what it said'; exit 1 ;;
   three*) echo 'No tests ran' ;;
 esac
 """)

@@ -4,6 +4,7 @@
 // byte.
 #include "embed/opencl_calls.hpp"
 #include "embed/variants.hpp"
+#include "embed/without_binaries.hpp"
 #include "support/device_cloth.hpp"
 
 #include <catch2/catch.hpp>
@@ -208,6 +209,7 @@ TEST_CASE("a rebuild for patches that the program has no room for compiles anoth
 }
 
 TEST_CASE("a rebuild keeps what became of the program binary, unless it compiles", "[embed]") {
+    if (without_binaries()) return;
     const MovingCloth small = moving_cloth(tetrahedron(), 1);
     const MovingCloth large = moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 2);
     StrainLimiter first(device().context, device().id, small.topology);

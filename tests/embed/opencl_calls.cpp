@@ -4,7 +4,9 @@
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <algorithm>
+#include <cstring>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -207,6 +209,7 @@ SHOWN cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, co
 
 SHOWN cl_int clGetProgramInfo(cl_program program, cl_program_info what, size_t size, void* value, size_t* value_size) {
     static auto* const next = real<decltype(clGetProgramInfo)>("clGetProgramInfo");
+    if (what == CL_PROGRAM_BINARY_SIZES || what == CL_PROGRAM_BINARIES) ++calls.binary_queries;
     const cl_int status = next(program, what, size, value, value_size);
     if (pretended.no_binaries && what == CL_PROGRAM_BINARY_SIZES) std::fill_n(static_cast<char*>(value), size, char{0});
     return status;
@@ -222,6 +225,12 @@ SHOWN cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t si
 SHOWN cl_int clGetPlatformInfo(cl_platform_id platform, cl_platform_info what, size_t size, void* value,
                                size_t* value_size) {
     static auto* const next = real<decltype(clGetPlatformInfo)>("clGetPlatformInfo");
+    if (what == CL_PLATFORM_VERSION && pretended.platform_version) {
+        const std::string_view version = pretended.platform_version;
+        if (value && size > version.size()) std::memcpy(value, version.data(), version.size() + 1);
+        if (value_size) *value_size = version.size() + 1;
+        return CL_SUCCESS;
+    }
     const cl_int status = next(platform, what, size, value, value_size);
     if (what == pretended.other_platform_text) alter(value, size);
     return status;

@@ -30,6 +30,7 @@ struct OpenClCalls {
     int builds = 0;          ///< clBuildProgram
     int warned_builds = 0;   ///< those of them whose log has a warning
     int binaries = 0;        ///< clCreateProgramWithBinary
+    int binary_queries = 0;  ///< clGetProgramInfo for a program's binaries or their sizes
     std::size_t allocated_bytes = 0;
     OpenClReferences held;
 };
@@ -40,6 +41,7 @@ OpenClCalls opencl_calls();
 struct Pretence {
     cl_device_info other_device_text = 0;      ///< this text of a device is another one
     cl_platform_info other_platform_text = 0;  ///< this text of a platform is another one
+    const char* platform_version = nullptr;    ///< CL_PLATFORM_VERSION in place of the true one
     bool binaries_are_invalid = false;         ///< clCreateProgramWithBinary fails with CL_INVALID_BINARY
     bool no_binaries = false;                  ///< binaries of programs are 0 bytes long
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "embed/opencl_calls.hpp"
 #include "embed/variants.hpp"
+#include "embed/without_binaries.hpp"
 #include "support/device_cloth.hpp"
 
 #include <apsl/apsl.h>
@@ -66,6 +67,7 @@ struct Pretending {
 }  // namespace
 
 TEST_CASE("program binary: a limiter made from it gives the same bytes, in every variant", "[embed]") {
+    if (without_binaries()) return;
     for (const Options& options : variants) {
         CAPTURE(static_cast<int>(options.matrix), static_cast<int>(options.apply), static_cast<int>(options.execution));
         StrainLimiter first = limiter(options);
@@ -89,6 +91,7 @@ TEST_CASE("program binary: a limiter made from it gives the same bytes, in every
 }
 
 TEST_CASE("program binary: asked for before the first call it works as well", "[embed]") {
+    if (without_binaries()) return;
     const Options options{.execution = Execution::one_group};
     StrainLimiter first = limiter(options);
     const Binary binary = first.program_binary();
@@ -98,6 +101,7 @@ TEST_CASE("program binary: asked for before the first call it works as well", "[
 }
 
 TEST_CASE("program binary: corrupted or cut short it is refused and the program rebuilt", "[embed]") {
+    if (without_binaries()) return;
     const Kept kept;
     // One byte of each field: magic, format version, both halves of the program's fingerprint, size, both halves of the
     // payload's fingerprint; then the payload's first, some middle and its last byte.
@@ -124,6 +128,7 @@ TEST_CASE("program binary: corrupted or cut short it is refused and the program 
 }
 
 TEST_CASE("program binary: of other options, device or driver it is refused and the program rebuilt", "[embed]") {
+    if (without_binaries()) return;
     const Kept kept;
     Options other = kept.options;
     other.velocity_stride = 4;
@@ -147,6 +152,7 @@ TEST_CASE("program binary: of other options, device or driver it is refused and 
 }
 
 TEST_CASE("program binary: rebuilt where the driver refuses it, empty where the driver gives none", "[embed]") {
+    if (without_binaries()) return;
     const Kept kept;
     {
         const Pretending refusing({.binaries_are_invalid = true});
@@ -158,7 +164,34 @@ TEST_CASE("program binary: rebuilt where the driver refuses it, empty where the 
     CHECK(limiter(kept.options).program_binary().empty());
 }
 
+TEST_CASE("program binary: pocl 6 with LLVM 18 is not asked for one, for it may abort the process", "[embed]") {
+    const StrainLimiter asked = limiter({.execution = Execution::one_group});
+    for (const char* version :
+         {"OpenCL 3.0 PoCL 6.0+debian  Linux, None+Asserts, RELOC, SPIR-V, LLVM 18.1.8, SLEEF, DISTRO, POCL_DEBUG",
+          "OpenCL 3.0 PoCL 6.1  Linux, Release, LLVM 19.1.7"}) {
+        CAPTURE(version);
+        const Pretending elsewhere({.platform_version = version});
+        const int queries = opencl_calls().binary_queries;
+        CHECK(asked.program_binary().empty());
+        CHECK(opencl_calls().binary_queries == queries);
+    }
+}
+
+TEST_CASE("program binary: other versions of pocl, and other LLVMs, are asked", "[embed]") {
+    if (without_binaries()) return;
+    const StrainLimiter asked = limiter({.execution = Execution::one_group});
+    for (const char* version :
+         {"OpenCL 3.0 PoCL 3.1+debian  Linux, None+Asserts, RELOC, SPIR, LLVM 15.0.6, SLEEF, DISTRO, POCL_DEBUG",
+          "OpenCL 3.0 PoCL 6.0  Linux, Release, LLVM 17.0.6", "OpenCL 3.0 PoCL 6.0  Linux, without a compiler",
+          "OpenCL 3.0 PoCL 7.1  Linux, Release, LLVM 21.1.0", "OpenCL 2.0 LLVM 18.1.8"}) {
+        CAPTURE(version);
+        const Pretending elsewhere({.platform_version = version});
+        CHECK_FALSE(asked.program_binary().empty());
+    }
+}
+
 TEST_CASE("program binary: in a context of all the platform's devices", "[embed]") {
+    if (without_binaries()) return;
     cl_platform_id platform = nullptr;
     require_success(clGetDeviceInfo(device().id, CL_DEVICE_PLATFORM, sizeof platform, &platform, nullptr),
                     "clGetDeviceInfo");
@@ -181,6 +214,7 @@ TEST_CASE("program binary: in a context of all the platform's devices", "[embed]
 }
 
 TEST_CASE("program binary: the second start is quick", "[embed]") {
+    if (without_binaries()) return;
     // A stride that no run before had, so that the driver's own cache cannot have the program.
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     const std::uint32_t stride = 3 + static_cast<std::uint32_t>(now / std::chrono::milliseconds(1) % 50000);
@@ -205,6 +239,7 @@ TEST_CASE("program binary: the second start is quick", "[embed]") {
 }
 
 TEST_CASE("program binary: the C interface gives and takes it", "[embed]") {
+    if (without_binaries()) return;
     const Options options{.execution = Execution::one_group};
     apsl_options c_options = apsl_default_options();
     c_options.execution = APSL_EXECUTION_ONE_GROUP;

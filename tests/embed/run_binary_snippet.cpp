@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "embed/binary_snippet.hpp"
+#include "embed/without_binaries.hpp"
 #include "support/device_cloth.hpp"
 
 #include <unistd.h>
@@ -10,6 +11,7 @@ using namespace apsl;
 using namespace apsl::test;
 
 TEST_CASE("docs/embedding.md's snippet keeps the program in a file and starts from it", "[embed]") {
+    if (without_binaries()) return;
     const MovingCloth cloth = moving_cloth(tetrahedron(), 1);
     const std::filesystem::path path =
         std::filesystem::temp_directory_path() / ("apsl_program_binary_" + std::to_string(getpid()));

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes the Debian packages, installs them in a fresh Debian 12 (debootstrap, minbase, from this machine's mirror) with
-# nothing but what they depend on, and there builds and runs the consumers and the program. As root; a few minutes.
+# Makes the Debian packages, installs them in a fresh Debian of this machine's release (debootstrap, minbase, from its
+# mirror) with nothing but what they depend on, and there builds and runs the consumers and the program. As root; a few
+# minutes.
 # Arguments and environment are those of cmake/make_debs.sh: --libraries leaves out the program.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -19,8 +20,10 @@ clean_up() {
   rm -rf --one-file-system "$root"
 }
 trap clean_up EXIT
-mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Codename: bookworm' | head -n 1)
-debootstrap --variant=minbase bookworm "$root" "$mirror"
+release=$(. /etc/os-release && echo "$VERSION_CODENAME")
+mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "Codename: $release" | head -n 1)
+[[ -n "$mirror" ]] || { echo "error: apt has no mirror of \"$release\", expected this machine's release of Debian" >&2; exit 1; }
+debootstrap --variant=minbase "$release" "$root" "$mirror"
 
 # pocl asks these what processors and memory there are.
 mount -t proc proc "$root/proc"
