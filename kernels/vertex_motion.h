@@ -259,6 +259,7 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
             motion[i] = (float4)(step.xyz, given);
 #endif
             (void)free;
+            (void)touched;
 #endif
             total_correction[i] = total;
         }
