@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "embed/c_program.h"
+#include "embed/c_views.hpp"
 #include "support/device_cloth.hpp"
 
 #include <catch2/catch.hpp>
@@ -12,19 +13,6 @@ using namespace apsl;
 using namespace apsl::test;
 
 namespace {
-
-apsl_buffers c_views(const CallerBuffers& buffers) {
-    const Buffers v = buffers.views();
-    return {{v.positions.buffer, v.positions.offset},
-            {v.velocities.buffer, v.velocities.offset},
-            {v.inverse_masses.buffer, v.inverse_masses.offset},
-            {v.rest_areas.buffer, v.rest_areas.offset},
-            {v.regularization.buffer, v.regularization.offset},
-            {v.rest_shapes.buffer, v.rest_shapes.offset},
-            {v.stretch_ceilings.buffer, v.stretch_ceilings.offset},
-            {v.contacts.buffer, v.contacts.offset},
-            {v.rest_hinges.buffer, v.rest_hinges.offset}};
-}
 
 struct CTopology {
     apsl_topology* topology = nullptr;
@@ -49,7 +37,7 @@ TEST_CASE("the C interface does what the C++ one does, byte for byte, in every e
         const std::vector<Stats> expected_stats = filter(limiter, expected, {&parameters, 1});
 
         const Owned<cl_command_queue> queue = in_order_queue();
-        const apsl_buffers views = c_views(buffers);
+        const apsl_buffers views = c_views(buffers.views());
         apsl_stats stats{};
         std::size_t scratch_bytes = 0;
         REQUIRE(filter_in_c(device().context, device().id, queue.get(), cloth.topology->triangles().data()->data(),
@@ -114,7 +102,7 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     CHECK(apsl_limiter_scratch_bytes(nullptr) == 0);
     REQUIRE(apsl_limiter_create(device().context, device().id, cloths, 1, nullptr, &limiter) == APSL_SUCCESS);
 
-    const apsl_buffers views = c_views(buffers);
+    const apsl_buffers views = c_views(buffers.views());
     apsl_parameters parameters = apsl_default_parameters();
     parameters.regularization = 0.5f;
     cl_event event = nullptr;
@@ -205,22 +193,22 @@ TEST_CASE("the C interface: rest areas from positions, a cloth off, scratch memo
     apsl_parameters parameters = apsl_default_parameters();
     CHECK(parameters.enabled == 1);
     parameters.enabled = 0;
-    CHECK(filter_in_c(limiter, c_views(buffers), parameters).status == APSL_STATUS_OFF);
+    CHECK(filter_in_c(limiter, c_views(buffers.views()), parameters).status == APSL_STATUS_OFF);
     CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
     parameters.enabled = 1;
     StrainLimiter same(device().context, device().id, cloth.topology);
     const std::vector<Stats> expected_stats = filter(same, expected, {&defaults, 1});
-    const apsl_stats stats = filter_in_c(limiter, c_views(buffers), parameters);
+    const apsl_stats stats = filter_in_c(limiter, c_views(buffers.views()), parameters);
     CHECK(std::memcmp(&stats, expected_stats.data(), sizeof stats) == 0);
     CHECK(same_bytes(buffers.read_velocities(), expected.read_velocities()));
 
     // At rest where it lies: x̃ as rest positions, and no velocities.
     const Owned<cl_command_queue> queue = in_order_queue();
-    apsl_buffers views = c_views(buffers);
+    apsl_buffers views = c_views(buffers.views());
     MovingCloth still = cloth;
     still.velocities.assign(still.velocities.size(), 0.0);
     const CallerBuffers at_rest({&still, 1}, {});
-    views.velocities = c_views(at_rest).velocities;
+    views.velocities = c_views(at_rest.views()).velocities;
     cl_event measured = nullptr;
     CHECK(apsl_limiter_enqueue_rest_areas(limiter, queue.get(), nullptr, &views.rest_areas, 0, nullptr, &measured) ==
           APSL_ERROR_INVALID_ARGUMENT);
@@ -236,7 +224,7 @@ TEST_CASE("the C interface: rest areas from positions, a cloth off, scratch memo
     const CallerBuffers other_buffers({&other, 1}, {}), other_expected({&other, 1}, {});
     StrainLimiter fresh(device().context, device().id, other.topology);
     filter(fresh, other_expected, {&defaults, 1});
-    CHECK(filter_in_c(limiter, c_views(other_buffers), apsl_default_parameters()).status == APSL_STATUS_OK);
+    CHECK(filter_in_c(limiter, c_views(other_buffers.views()), apsl_default_parameters()).status == APSL_STATUS_OK);
     CHECK(same_bytes(other_buffers.read_velocities(), other_expected.read_velocities()));
     CHECK(apsl_limiter_scratch_bytes(limiter) == fresh.scratch_bytes());
     apsl_limiter_destroy(limiter);
@@ -310,7 +298,7 @@ TEST_CASE("a whole step by the C interface leaves the bytes of the C++ one", "[e
     REQUIRE(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &c_options, &limiter) ==
             APSL_SUCCESS);
     const CallerBuffers by_c({&cloth, 1}, options), by_cpp({&cloth, 1}, options);
-    const apsl_buffers views = c_views(by_c);
+    const apsl_buffers views = c_views(by_c.views());
     const Owned<cl_command_queue> queue = in_order_queue();
     REQUIRE(apsl_limiter_enqueue(limiter, queue.get(), &views, &c_parameters, 1, 0, nullptr, nullptr) == APSL_SUCCESS);
     clFinish(queue.get());
@@ -336,7 +324,7 @@ TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {
     REQUIRE(apsl_limiter_create(device().context, device().id, &topology.topology, 1, nullptr, &limiter) ==
             APSL_SUCCESS);
     const CallerBuffers buffers({&cloth, 1}, {});
-    const apsl_buffers views = c_views(buffers);
+    const apsl_buffers views = c_views(buffers.views());
     const Owned<cl_command_queue> queue = in_order_queue();
     apsl_parameters parameters = apsl_default_parameters();
     parameters.reserved[0] = 1;

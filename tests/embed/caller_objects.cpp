@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Buffers, queues and events that a call cannot use: refused by name, before anything is queued.
+#include "embed/c_views.hpp"
 #include "embed/opencl_calls.hpp"
 #include "embed/refusals.hpp"
 #include "support/device_cloth.hpp"
@@ -207,11 +208,7 @@ void check_refused(StrainLimiter& made, apsl_limiter* in_c, const std::string& w
     const int reads = opencl_calls().reads;
     check_invalid(what, [&] { clReleaseEvent(made.read_stats(queue, stats, wait_list)); });
 
-    const auto c_view = [](const BufferView& view) { return apsl_buffer_view{view.buffer, view.offset}; };
-    const apsl_buffers c_views{c_view(views.positions),        c_view(views.velocities),
-                               c_view(views.inverse_masses),   c_view(views.rest_areas),
-                               c_view(views.regularization),   c_view(views.rest_shapes),
-                               c_view(views.stretch_ceilings), c_view(views.contacts)};
+    const apsl_buffers in_c_views = c_views(views);
     const apsl_parameters parameters = apsl_default_parameters();
     apsl_stats c_stats{};
     cl_event event = nullptr;
@@ -222,8 +219,8 @@ void check_refused(StrainLimiter& made, apsl_limiter* in_c, const std::string& w
         CHECK(event == nullptr);
     };
     const int commands = opencl_calls().commands;
-    check_in_c(apsl_limiter_enqueue(in_c, queue, &c_views, &parameters, 1, count, wait_list.data(), &event));
-    check_in_c(apsl_limiter_enqueue_rest_areas(in_c, queue, &c_views.positions, &c_views.rest_areas, count,
+    check_in_c(apsl_limiter_enqueue(in_c, queue, &in_c_views, &parameters, 1, count, wait_list.data(), &event));
+    check_in_c(apsl_limiter_enqueue_rest_areas(in_c, queue, &in_c_views.positions, &in_c_views.rest_areas, count,
                                                wait_list.data(), &event));
     check_in_c(apsl_limiter_read_stats(in_c, queue, &c_stats, 1, count, wait_list.data(), &event));
     CHECK(opencl_calls().commands == commands);

@@ -2,6 +2,7 @@
 //
 // What a limiter takes it gives back, in the end and where something fails on the way.
 #include "embed/c_program.h"
+#include "embed/c_views.hpp"
 #include "embed/opencl_calls.hpp"
 #include "embed/variants.hpp"
 #include "support/device_cloth.hpp"
@@ -81,12 +82,7 @@ void refuse_in_c(const MovingCloth& cloth) {
 }
 
 void make_and_use_in_c(const MovingCloth& cloth, const CallerBuffers& buffers) {
-    const Buffers v = buffers.views();
-    apsl_buffers views{};
-    views.positions = {v.positions.buffer, v.positions.offset};
-    views.velocities = {v.velocities.buffer, v.velocities.offset};
-    views.inverse_masses = {v.inverse_masses.buffer, v.inverse_masses.offset};
-    views.rest_areas = {v.rest_areas.buffer, v.rest_areas.offset};
+    const apsl_buffers views = c_views(buffers.views());
     const Owned<cl_command_queue> queue = in_order_queue();
     apsl_stats stats{};
     std::size_t scratch_bytes = 0;
