@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """What the results of `apsl compare` say about speed against accuracy: tables in Markdown. Expects the studies
-curtain_8k, curtain_32k, refinement and front of bench/studies as files of one folder; that of stretch where it is there."""
+curtain_8k, curtain_32k, refinement and front of bench/studies as files of one folder; those of stretch and whole_frame where they are there."""
 
 import sys
 from pathlib import Path
 
 from chart_tools import ChartError, OneLineParser, exit_code_of, plain
 from compare_results import (SETTLED_AREA, SETTLED_EDGE, SETTLED_EXCESS, front, held, is_ours, read_results, time_at)
+from whole_frame_chart import whole_frames
 
 MEAN, GREATEST = "mean_max_area_change", "max_area_change"
 LEVELS = (0.3, 0.2, 0.1, 0.05, 0.02, 0.01)
@@ -170,6 +171,19 @@ def stretch_rows(results):
     return rows
 
 
+def whole_frame_rows(results):
+    """Every run with its whole frame's milliseconds of processor time."""
+    runs = whole_frames(results)
+    rows = ["| | method | area change | edges | principal stretch | ms a frame |", "|---|---|---|---|---|---|"]
+    for scene in dict.fromkeys(run["scene"] for run in runs):
+        for run in (run for run in runs if run["scene"] == scene and held(run)):
+            count = run["parameters"].get("small_steps", run["parameters"].get("strain_limiting.sub_steps"))
+            setting = run["title"] + (f", {count}" if count is not None else "")
+            rows.append(f"| {scene} | {setting} | {shown(run[SETTLED_AREA])} | {1.0 + run[SETTLED_EDGE]:.3f} | "
+                        f"{1.0 + run[SETTLED_EXCESS]:.3f} | {plain(run['milliseconds'])} |")
+    return rows
+
+
 def run(arguments):
     parser = OneLineParser(description=__doc__)
     parser.add_argument("folder", nargs="?", default="docs/accuracy", type=Path)
@@ -186,6 +200,9 @@ def run(arguments):
     stretch = options.folder / "stretch.json"
     if stretch.exists():
         rows += ["", *stretch_rows(read_results(stretch))]
+    whole_frame = options.folder / "whole_frame.json"
+    if whole_frame.exists():
+        rows += ["", *whole_frame_rows(read_results(whole_frame))]
     print("\n".join(rows))
 
 

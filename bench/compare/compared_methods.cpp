@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compare/compared_methods.hpp"
 
+#include "methods/tethered_distances.hpp"
 #include "run/input_error.hpp"
 
 #include <apsl/parameters.hpp>
@@ -25,6 +26,21 @@ MethodParameter sub_steps(std::vector<double> sweep) {
 
 MethodParameter regularization(std::vector<double> sweep) {
     return {.name = regularization_path, .standard = {}, .least = 1.0, .sweep = std::move(sweep)};
+}
+
+// Distance constraints as a whole integrator.
+ComparedMethod distances(std::string name, std::string title, std::string citation, double tether_length) {
+    const methods::TetherSettings standard;
+    return {
+        .name = std::move(name),
+        .title = std::move(title),
+        .citation = std::move(citation),
+        .kind = MethodKind::tethers,
+        .parameters = {{.name = "small_steps", .standard = standard.steps, .least = 1.0, .sweep = {5, 10, 20, 40, 80}},
+                       {.name = "tether_length", .standard = tether_length, .least = 0.0, .sweep = {}},
+                       {.name = "bending", .standard = standard.bending, .least = 0.0, .sweep = {}},
+                       {.name = "damping", .standard = standard.damping, .least = 0.0, .sweep = {}}},
+        .settings = {}};
 }
 
 std::vector<ComparedMethod> make_compared_methods() {
@@ -129,6 +145,17 @@ std::vector<ComparedMethod> make_compared_methods() {
              {{.name = stretch_ceiling_path, .standard = 1.1, .least = 1.01, .sweep = {}},
               {.name = sub_steps_path, .standard = Parameters{}.sub_steps, .least = 2.0, .sweep = {20, 30, 60}}},
          .settings = {{"strain_limiting", nlohmann::json::object()}}});
+    // The same with no springs in front: the limiter takes the whole step.
+    table.push_back(
+        {.name = "apsl_stand_alone",
+         .title = "Area preserving, stretch ceiling, stand-alone",
+         .citation = han,
+         .kind = MethodKind::ours,
+         .parameters =
+             {{.name = stretch_ceiling_path, .standard = 1.1, .least = 1.01, .sweep = {}},
+              {.name = sub_steps_path, .standard = Parameters{}.sub_steps, .least = 2.0, .sweep = {20, 30, 60}}},
+         .settings = {{"strain_limiting", nlohmann::json::object()},
+                      {"integrator", {{"stand_alone", nlohmann::json::object()}}}}});
     table.push_back(
         {.name = "apsl_direct",
          .title = "Area preserving, direct solves",
@@ -146,6 +173,8 @@ std::vector<ComparedMethod> make_compared_methods() {
                      .settings = {{"strain_limiting.matrix", "consistent"},
                                   {"strain_limiting.stepping", "whole_step"},
                                   {"strain_limiting.adaptive_threshold", 0}}});
+    table.push_back(distances("tethers", "Distances and tethers, small steps", "Kim et al. 2012", 1.0));
+    table.push_back(distances("pbd_small_steps", "Distances without tethers, small steps", "Macklin et al. 2019", 0.0));
     for (const methods::MethodInfo& method : methods::all_methods()) {
         ComparedMethod baseline{.name = method.name,
                                 .title = method.title,

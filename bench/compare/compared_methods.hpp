@@ -20,6 +20,7 @@ enum class MethodKind {
     ours,      ///< apsl::StrainLimiter on an OpenCL device
     direct,    ///< ours on the processor, with a direct solver
     baseline,  ///< of bench/methods
+    tethers,   ///< methods::TetheredDistances in place of the scene's integrator
 };
 
 /// A parameter of a method. For ours the name is a path in the scene.

@@ -3,6 +3,8 @@
 
 #include "compare/baseline_filter.hpp"
 #include "compare/direct_filter.hpp"
+#include "compare/tethers_step.hpp"
+#include "methods/parameter_values.hpp"
 #include "run/input_error.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
@@ -15,6 +17,15 @@
 namespace apsl::compare {
 namespace {
 
+methods::TetherSettings tether_settings(const PlannedRun& run, const scenes::Scene& scene) {
+    const ParameterValues& values = run.prepared.parameters;
+    return {.steps = methods::whole_number("small_steps", values.at("small_steps").get<double>()),
+            .tether_length = values.at("tether_length").get<double>(),
+            .bending = values.at("bending").get<double>(),
+            .damping = values.at("damping").get<double>(),
+            .gravity = Eigen::Vector3d(scene.gravity.data())};
+}
+
 scenes::FilterStage make_filter(const PlannedRun& run, const RunConditions& conditions, const scenes::Scene& scene,
                                 const scenes::ClothState& cloth) {
     switch (run.method->kind) {
@@ -26,6 +37,8 @@ scenes::FilterStage make_filter(const PlannedRun& run, const RunConditions& cond
                                              conditions.profile);
         case MethodKind::direct:
             return make_direct_filter(cloth, scene.strain_limiting.value());
+        case MethodKind::tethers:
+            return make_tethers_step(tether_settings(run, scene), cloth, scene.time_step);
         case MethodKind::baseline:
             break;
     }
@@ -38,6 +51,7 @@ scenes::FilterStage make_filter(const PlannedRun& run, const RunConditions& cond
 std::string device_name(scenes::FilterStage& filter) {
     if (const scenes::OpenClCloth* device = scenes::on_device(filter)) return device->device_name();
     if (const auto* custom = std::get_if<scenes::CustomFilter>(&filter)) return custom->device;
+    if (const auto* step = std::get_if<scenes::CustomStep>(&filter)) return step->device;
     return "none";
 }
 

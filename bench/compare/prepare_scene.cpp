@@ -66,7 +66,10 @@ nlohmann::json value_at(const nlohmann::json& document, const std::string& path)
 PreparedScene prepare_scene(const ComparedMethod& method, const nlohmann::json& document, const std::string& file,
                             const ParameterValues& parameters) {
     check_parameters(method, parameters);
-    if (method.kind != MethodKind::ours && takes_whole_steps(document))
+    const bool integrates = method.kind == MethodKind::tethers;
+    if (integrates && document.contains("colliders") && !document["colliders"].empty())
+        throw InputError(file + ": " + method.name + ": expected a scene without colliders");
+    if (method.kind != MethodKind::ours && !integrates && takes_whole_steps(document))
         throw InputError(file + ": " + method.name +
                          ": expected a scene whose integrator is not stand_alone: that is a step of our limiter");
     PreparedScene prepared{.document = document, .parameters = ParameterValues::object()};
@@ -76,6 +79,7 @@ PreparedScene prepare_scene(const ComparedMethod& method, const nlohmann::json& 
         for (const auto& [path, value] : method.settings) set(prepared.document, path, value);
     } else {
         prepared.document.erase("strain_limiting");
+        if (integrates) prepared.document["integrator"] = {{"none", nlohmann::json::object()}};
     }
     // Those given first to last, and before them the standard ones.
     ParameterValues values = ParameterValues::object();

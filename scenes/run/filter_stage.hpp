@@ -3,6 +3,7 @@
 
 #include "run/bending_iterations.hpp"
 #include "run/custom_filter.hpp"
+#include "run/custom_step.hpp"
 #include "run/float_range.hpp"
 #include "run/input_error.hpp"
 #include "run/opencl_filter.hpp"
@@ -19,9 +20,9 @@ namespace apsl::scenes {
 enum class Backend { opencl, reference };
 
 /// The strain limiting of a scene, a step where it is stand-alone, or std::monostate where the scene names none: then
-/// no device is looked for. No scene asks for a CustomFilter: who compares limiters puts one in place.
+/// no device is looked for. No scene asks for a CustomFilter or CustomStep: who compares puts one in place.
 using FilterStage =
-    std::variant<std::monostate, OpenClFilter, ReferenceFilter, OpenClStep, ReferenceStep, CustomFilter>;
+    std::variant<std::monostate, OpenClFilter, ReferenceFilter, OpenClStep, ReferenceStep, CustomFilter, CustomStep>;
 
 /// What is on an OpenCL device, or null.
 inline OpenClCloth* on_device(FilterStage& stage) {

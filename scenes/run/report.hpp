@@ -51,6 +51,7 @@ struct FrameReport {
     double read_back_seconds = 0.0;  ///< a stand-alone cloth from the device, to be measured and written
     double measuring_seconds = 0.0;
     double writing_seconds = 0.0;
+    double processor_seconds = 0.0;  ///< of all threads, in the time of step_seconds and read_back_seconds
     Status status = Status::ok;
     std::uint32_t raised_vertices = 0;         ///< that weighed more than given, because the tension needs it
     double greatest_mass_ratio = 1.0;          ///< their greatest mass over the one given

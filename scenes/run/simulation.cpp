@@ -33,6 +33,11 @@ void note(const AreaChange& change, FrameReport& report) {
     report.rms_area_change += change.rms * change.rms;
 }
 
+void add_to_step(const Stopwatch& part, FrameReport& report) {
+    report.step_seconds += part.seconds();
+    report.processor_seconds += part.processor_seconds();
+}
+
 // Of one call of the filter.
 void note_stats(const Stats& stats, int frame, int step, FrameReport& report) {
     report.sub_steps += stats.sub_steps;
@@ -97,6 +102,8 @@ void Simulation::name_stages(const Scene& scene) {
     if (std::holds_alternative<BendingSpringsIntegrator>(scene.integrator)) stages_.emplace_back("bending_springs");
     if (const auto* custom = std::get_if<CustomFilter>(&filter_))
         stages_.push_back(custom->name);
+    else if (const auto* custom_step = std::get_if<CustomStep>(&filter_))
+        stages_.push_back(custom_step->name);
     else if (scene.strain_limiting)
         stages_.emplace_back(scene.strain_limiting->options.integrates ? "stand_alone" : "strain_limiting");
     if (!scene.colliders.empty()) stages_.emplace_back("colliders");
@@ -142,7 +149,7 @@ void Simulation::move_pins(int step, FrameReport& report) {
     moving_pins_->set_velocities(cloth_, start_of(step), time_step_);
     if (auto* device = std::get_if<OpenClStep>(&filter_)) device->place_pins(cloth_);
     report.pin_seconds += moving.seconds();
-    report.step_seconds += moving.seconds();
+    add_to_step(moving, report);
 }
 
 void Simulation::run_step(int step, FrameReport& report) {
@@ -150,7 +157,7 @@ void Simulation::run_step(int step, FrameReport& report) {
     const Stopwatch integrating;
     integrate();
     report.integrator_seconds += integrating.seconds();
-    report.step_seconds += integrating.seconds();
+    add_to_step(integrating, report);
     if (const auto vertex = first_not_finite(cloth_.velocities)) {
         return break_down(step, "integrator", "velocity of vertex " + std::to_string(*vertex) + " is not finite",
                           report);
@@ -163,9 +170,8 @@ void Simulation::run_step(int step, FrameReport& report) {
         if (auto* opencl = std::get_if<OpenClFilter>(&filter_)) stats = opencl->filter(cloth_, colliders);
         if (auto* reference = std::get_if<ReferenceFilter>(&filter_)) stats = reference->filter(cloth_, colliders);
         if (auto* custom = std::get_if<CustomFilter>(&filter_)) stats = custom->filter(cloth_);
-        const double seconds = filtering.seconds();
-        report.filter_seconds += seconds;
-        report.step_seconds += seconds;
+        report.filter_seconds += filtering.seconds();
+        add_to_step(filtering, report);
         note_stats(*stats, frame_, step, report);
     }
     const Stopwatch measuring;
@@ -182,7 +188,7 @@ void Simulation::run_step(int step, FrameReport& report) {
         report.collision_seconds += after_filter.seconds();
     }
     advance_positions(cloth_, time_step_);
-    report.step_seconds += after_filter.seconds();
+    add_to_step(after_filter, report);
     if (const auto vertex = first_not_finite(cloth_.positions))
         return break_down(step, "advance", "position of vertex " + std::to_string(*vertex) + " is not finite", report);
     const Stopwatch measuring_end;
@@ -197,13 +203,14 @@ void Simulation::respond_to_collisions(int step) {
 }
 
 bool Simulation::takes_whole_steps() const {
-    return std::holds_alternative<OpenClStep>(filter_) || std::holds_alternative<ReferenceStep>(filter_);
+    return std::holds_alternative<OpenClStep>(filter_) || std::holds_alternative<ReferenceStep>(filter_) ||
+           std::holds_alternative<CustomStep>(filter_);
 }
 
 void Simulation::run_whole_step(int step, FrameReport& report) {
     move_pins(step, report);
     auto* device = std::get_if<OpenClStep>(&filter_);
-    if (!colliders_.empty()) {
+    if (!colliders_.empty() && !std::holds_alternative<CustomStep>(filter_)) {
         const Stopwatch looking;
         const std::vector<ColliderStep> colliders = collider_steps(step);
         if (device != nullptr)
@@ -211,16 +218,23 @@ void Simulation::run_whole_step(int step, FrameReport& report) {
         else
             std::get<ReferenceStep>(filter_).find_contacts(cloth_, colliders);
         report.collision_seconds += looking.seconds();
-        report.step_seconds += looking.seconds();
+        add_to_step(looking, report);
     }
+    auto* custom = std::get_if<CustomStep>(&filter_);
     const Stopwatch stepping;
-    const Stats stats = device != nullptr ? device->step(cloth_) : std::get<ReferenceStep>(filter_).step(cloth_);
+    const Stats stats = device != nullptr   ? device->step(cloth_)
+                        : custom != nullptr ? custom->step(cloth_)
+                                            : std::get<ReferenceStep>(filter_).step(cloth_);
     report.filter_seconds += stepping.seconds();
-    report.step_seconds += stepping.seconds();
+    add_to_step(stepping, report);
     note_stats(stats, frame_, step, report);
-    note({stats.max_area_change, stats.rms_area_change}, report);
+    const Stopwatch measuring;
+    note(custom != nullptr ? summarize(cloth_, scenes::area_changes(cloth_))
+                           : AreaChange{stats.max_area_change, stats.rms_area_change},
+         report);
+    report.measuring_seconds += measuring.seconds();
     if (stats.status == Status::diverged) {
-        return break_down(step, "stand_alone",
+        return break_down(step, custom != nullptr ? custom->name : "stand_alone",
                           "the step met or made a number that is not finite" + first_offender(stats), report);
     }
 }
@@ -231,6 +245,7 @@ void Simulation::read_back(FrameReport& report) {
     const Stopwatch reading;
     device->read_back(cloth_);
     report.read_back_seconds = reading.seconds();
+    report.processor_seconds += reading.processor_seconds();
 }
 
 Energy Simulation::energy() const {

@@ -28,6 +28,7 @@ def made_up_run(scene, method, milliseconds, mean, parameters=None, triangles=81
             "parameters": {"steps_per_frame": 1, **(parameters or {"iterations": 5})},
             "status": status, "triangles": triangles, "frames": 2, "solves": 20, "iterations_per_solve": 3.5,
             "limiter_seconds_per_frame": {"median": 1e-3 * milliseconds},
+            "frame_processor_seconds": {"median": 1e-3 * milliseconds + 5e-3},
             "max_area_change": 2.0 * mean, "mean_max_area_change": mean, "rms_area_change": 0.3 * mean,
             "mean_displacement": [0.0, -mean, 0.0], "frame_max_area_change": [mean, 2.0 * mean, None],
             "settled": {"max_area_change": mean, "max_edge_stretch": 1.0 + 2.0 * mean,
@@ -84,6 +85,7 @@ class Charts(unittest.TestCase):
         for script, arguments in (("pareto_chart", ("--scene", "curtain")), ("convergence_chart", ("--scene", "curtain")),
                                   ("compare_curves", ("--scene", "curtain")), ("locking_chart", ()),
                                   ("stretch_chart", ("--scene", "curtain", "--ceiling", "1.1")),
+                                  ("whole_frame_chart", ()),
                                   ("refinement_chart", ("--target", "0.05")), ("deviation_chart", ())):
             with self.subTest(script=script):
                 out = self.folder / f"{script}.png"
@@ -104,6 +106,7 @@ class Charts(unittest.TestCase):
         (self.folder / "other.json").write_text('{"runs": [{}], "scenes": []}')
         for script, arguments in (("pareto_chart", (self.results, "--scene", "nowhere")),
                                   ("stretch_chart", (self.folder / "short.json", "--scene", "curtain")),
+                                  ("whole_frame_chart", (self.folder / "short.json",)),
                                   ("pareto_chart", (self.folder / "broken.json", "--scene", "curtain")),
                                   ("convergence_chart", (self.folder / "other.json", "--scene", "curtain")),
                                   ("compare_curves", (self.folder / "missing.json", "--scene", "curtain")),
@@ -143,11 +146,13 @@ class Charts(unittest.TestCase):
                             made_up_run("curtain", "apsl_ceiling", 6.0, 0.003, ceiling),
                             made_up_run("curtain", "apsl_ceiling", 7.0, 0.004, {**ceiling, "strain_limiting.sub_steps": 30})]
         self.write(results, "stretch.json")
+        self.write(made_up_results(), "whole_frame.json")
         code, said, complained = self.run_chart("compare_summary", self.folder)
         self.assertEqual((code, complained), (0, ""))
         self.assertIn("| ceiling 1.1, 20 sub-steps | 1 | 0.3 % | 1.006 | 1.009 | 3.00 | yes |", said)
         self.assertIn("| ceiling 1.1, 30 sub-steps | 1 | 0.4 % | 1.008 | 1.012 | 3.50 | no |", said)
         self.assertIn("| none | 1 | 60 % | 2.200 | 2.800 | – | no |", said)
+        self.assertIn("| curtain | apsl, 10 | 4 % | 1.080 | 1.120 | 7 |", said)  # 2 ms in the limiter, 5 for the rest
         for line in said.splitlines():
             self.assertNotRegex(line.removeprefix("| |"), r"\| +\|", line)
 

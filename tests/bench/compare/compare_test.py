@@ -56,7 +56,7 @@ class Compare(unittest.TestCase):
         keys = [json.dumps([run["method"], run["parameters"]], sort_keys=True) for run in runs]
         self.assertEqual(len(keys), len(set(keys)))
         ours = {"none", "springs", "apsl", "apsl_printed", "apsl_adaptive", "apsl_direct", "apsl_small_steps", "apsl_chebyshev",
-                "apsl_ceiling", "apsl_several_steps"}
+                "apsl_ceiling", "apsl_stand_alone", "tethers", "pbd_small_steps", "apsl_several_steps"}
         self.assertLess(ours, {run["method"] for run in runs})
         for run in runs:
             self.assertEqual(run["frames"], 2)
@@ -94,6 +94,21 @@ class Compare(unittest.TestCase):
         self.compare(self.flag, "--methods", "none", "--frames", 10, "--out", self.out)
         self.assertNotIn("settled", self.results()["runs"][0])
 
+    def test_tethers_are_whole_steps_in_the_integrators_place(self):
+        self.compare(self.flag, "--methods", "tethers,none", "--frames", 30, "--out", self.out)
+        runs = {run["parameters"].get("small_steps"): run for run in self.results()["runs"]}
+        self.assertEqual(set(runs), {None, 5, 10, 20, 40, 80})
+        for steps in (20, 40, 80):
+            run = runs[steps]
+            self.assertEqual((run["status"], run["device"], run["frames"]), ("ok", "this processor", 30))
+            self.assertEqual(run["energy"]["springs"], 0.0)
+            self.assertLess(run["settled"]["max_principal_stretch"], 1.1)
+            self.assertLess(run["settled"]["max_area_change"], 0.1)
+            self.assertGreater(run["frame_processor_seconds"]["third_quartile"], 0.0)
+        self.assertGreater(runs[None]["settled"]["max_principal_stretch"], 1.2)
+        # It falls as the springs let it fall: both swing below their pins.
+        self.assertLess(runs[20]["mean_displacement"][1], 0.5 * runs[None]["mean_displacement"][1])
+
     def test_finished_runs_are_not_made_again(self):
         self.compare(self.flag, "--methods", "none", "--out", self.out)
         first = self.results()["runs"]
@@ -121,9 +136,12 @@ class Compare(unittest.TestCase):
             self.assertEqual(before["parameters"], after["parameters"])
             self.assertEqual(before["max_area_change"], after["max_area_change"])
             self.assertEqual(len(after["rounds"]), 3)
-            self.assertEqual(after["rounds"][0], {**before["limiter_seconds_per_frame"], "commit": before["commit"]})
+            self.assertEqual(after["rounds"][0], {**before["limiter_seconds_per_frame"], "commit": before["commit"],
+                                                  "frame_processor_seconds": before["frame_processor_seconds"]})
             for name, value in after["limiter_seconds_per_frame"].items():
                 self.assertEqual(value, sorted(entry[name] for entry in after["rounds"])[1])
+            for name, value in after["frame_processor_seconds"].items():
+                self.assertEqual(value, sorted(entry["frame_processor_seconds"][name] for entry in after["rounds"])[1])
         self.assertIn(f"{3 * len(first)} of them done before", self.compare(*arguments, "--rounds", 3).stdout)
 
     def test_an_interruption_keeps_what_is_finished(self):

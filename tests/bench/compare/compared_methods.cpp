@@ -83,6 +83,29 @@ TEST_CASE("a stand-alone scene is a step of our limiter, which no other method t
           stand_alone["integrator"]);
 }
 
+TEST_CASE("ours stand-alone needs no scene that is") {
+    const PreparedScene alone = prepared("apsl_stand_alone", {{"strain_limiting.sub_steps", 20}});
+    CHECK(alone.document["integrator"] == nlohmann::json{{"stand_alone", nlohmann::json::object()}});
+    CHECK(alone.document["strain_limiting"]["stretch_ceiling"] == 1.1);
+    CHECK(alone.document["strain_limiting"]["sub_steps"] == 20);
+}
+
+TEST_CASE("tethers stand in the integrator's place, whatever that is, and know no colliders") {
+    nlohmann::json scene = scene_text;
+    for (const char* integrator : {"implicit_springs", "stand_alone"}) {
+        scene["integrator"] = {{integrator, nlohmann::json::object()}};
+        const PreparedScene tethers = prepare_scene(find_method("tethers"), scene, "scene.json", {{"small_steps", 40}});
+        CHECK(tethers.document["integrator"] == nlohmann::json{{"none", nlohmann::json::object()}});
+        CHECK_FALSE(tethers.document.contains("strain_limiting"));
+        CHECK(tethers.parameters["small_steps"] == 40);
+        CHECK(tethers.parameters["tether_length"] == 1);
+        CHECK(prepare_scene(find_method("pbd_small_steps"), scene, "scene.json", {}).parameters["tether_length"] == 0);
+    }
+    scene["colliders"] = nlohmann::json::array({{{"floor", nlohmann::json::object()}}});
+    CHECK_THROWS_WITH(prepare_scene(find_method("tethers"), scene, "scene.json", {}),
+                      "scene.json: tethers: expected a scene without colliders");
+}
+
 TEST_CASE("lists of values make every combination") {
     const std::vector<ParameterValues> all = combinations({{"a", {1, 2}}, {"b", {3, 4, 5}}, {"c", 6}});
     REQUIRE(all.size() == 6);

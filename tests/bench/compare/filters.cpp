@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compare/baseline_filter.hpp"
 #include "compare/direct_filter.hpp"
+#include "compare/tethers_step.hpp"
 #include "pipeline/measures.hpp"
 #include "run/reference_filter.hpp"
 
@@ -50,6 +51,28 @@ TEST_CASE("a baseline is left out where numbers are not finite") {
     const scenes::CustomFilter filter = make_baseline_filter(methods::all_methods()[0], {}, cloth, 0.1);
     CHECK(filter.filter(cloth).status == Status::diverged);
     CHECK(cloth.velocities == before.velocities);
+}
+
+TEST_CASE("a step of tethers moves positions and velocities of free vertices") {
+    scenes::ClothState cloth = square();
+    cloth.velocities[1] = 0.25;  // of the pinned vertex
+    const scenes::ClothState before = cloth;
+    const methods::TetherSettings settings{.steps = 20, .damping = 0.0, .gravity = Eigen::Vector3d::Zero()};
+    const scenes::CustomStep step = make_tethers_step(settings, cloth, 0.1);
+    CHECK(step.step(cloth).status == Status::ok);
+    CHECK(cloth.positions[1] == 0.1 * 0.25);
+    CHECK(cloth.velocities[1] == 0.25);
+    CHECK(cloth.positions[3] != before.positions[3]);
+    CHECK(scenes::edge_stretch(cloth).max < 1.05);  // torn apart it would be 1.2
+    CHECK(cloth.velocities[3] < before.velocities[3]);
+}
+
+TEST_CASE("a step of tethers is left out where numbers are not finite") {
+    scenes::ClothState cloth = square();
+    cloth.velocities[3] = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double> before = cloth.positions;
+    CHECK(make_tethers_step({}, cloth, 0.1).step(cloth).status == Status::diverged);
+    CHECK(cloth.positions == before);
 }
 
 TEST_CASE("direct solves end where tight Conjugate Gradient ends") {
