@@ -79,7 +79,7 @@ void append_patches(Adjacency& out, const Patches& patches, const apslk_cloth& c
 }
 
 // In the order of their least place, so that neighbours in memory share vertices.
-void append_hinges(Adjacency& out, const Topology& topology, const Places& places, apslk_cloth& cloth) {
+void append_hinges(Adjacency& out, const Topology& topology, const Places& places, const apslk_cloth& cloth) {
     const std::vector<Hinge> given = topology.hinges();
     const auto place = [&](std::uint32_t vertex) { return cloth.vertex_begin + places.of_vertex[vertex]; };
     std::vector<cl_uint4> placed(given.size());
@@ -92,15 +92,14 @@ void append_hinges(Adjacency& out, const Topology& topology, const Places& place
     std::sort(order.begin(), order.end(),
               [&](std::uint32_t a, std::uint32_t b) { return std::pair(least(a), a) < std::pair(least(b), b); });
     // Two bits of a hinge's corner hold its number.
-    cloth.hinge_begin = index(out.hinges.size(), max_index / 4, "hinges");
-    cloth.hinge_count = index(given.size(), max_index / 4, "hinges");
-    index(out.hinges.size() + given.size(), max_index / 4, "hinges");
+    const std::uint32_t first = out.hinge_offsets.back();
+    out.hinge_offsets.push_back(index(out.hinges.size() + given.size(), max_index / 4, "hinges"));
     std::vector<std::vector<std::uint32_t>> at_vertex(cloth.vertex_count);
     for (const std::uint32_t h : order) {
         const auto r = static_cast<std::uint32_t>(out.hinges.size());
         for (std::uint32_t n = 0; n < 4; ++n) at_vertex[placed[h].s[n] - cloth.vertex_begin].push_back(4 * r + n);
         out.hinges.push_back(placed[h]);
-        out.hinge_order.push_back(cloth.hinge_begin + h);
+        out.hinge_order.push_back(first + h);
     }
     for (const std::vector<std::uint32_t>& corners : at_vertex) {
         out.hinge_corners.insert(out.hinge_corners.end(), corners.begin(), corners.end());
@@ -114,7 +113,10 @@ Adjacency build_adjacency(std::span<const std::shared_ptr<const Topology>> cloth
                           bool with_hinges, std::uint32_t patch_triangles) {
     Adjacency out;
     out.corner_offsets.push_back(0);
-    if (with_hinges) out.hinge_corner_offsets.push_back(0);
+    if (with_hinges) {
+        out.hinge_offsets.push_back(0);
+        out.hinge_corner_offsets.push_back(0);
+    }
     if (with_pattern) out.row_offsets.push_back(0);
     std::size_t vertices = 0, triangles = 0, rest_areas = 0;
     for (const auto& topology : cloths) {

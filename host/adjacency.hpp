@@ -27,6 +27,7 @@ struct Adjacency {
     std::vector<std::uint32_t> patch_vertices;   ///< places of vertices
     std::vector<std::uint16_t> local_triangles;  ///< [3 T'], as numbers in the patch's vertices
     std::vector<cl_uint4> hinges;                ///< [H], places of vertices; none where nothing bends
+    std::vector<std::uint32_t> hinge_offsets;    ///< [cloths + 1], the first hinge of each
     std::vector<std::uint32_t> hinge_order;      ///< [H], place -> place in the caller's arrays
     std::vector<std::uint32_t> hinge_corner_offsets;  ///< [V + 1]
     std::vector<std::uint32_t> hinge_corners;         ///< [4 H], 4 · hinge + number of the vertex in it

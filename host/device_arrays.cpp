@@ -62,6 +62,7 @@ DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency
     const std::size_t hinge_count = adjacency.hinges.size();
     if (hinge_count > 0) {
         arrays.hinges = upload(adjacency.hinges);
+        arrays.hinge_offsets = upload(adjacency.hinge_offsets);
         arrays.hinge_order = upload(adjacency.hinge_order);
         arrays.hinge_corner_offsets = upload(adjacency.hinge_corner_offsets);
         arrays.hinge_corners = upload(adjacency.hinge_corners);

@@ -22,8 +22,8 @@ struct DeviceArrays {
     BufferHandle ordered_rest, ordered_scaling;
     BufferHandle moved, motion, total_correction, start_errors, gradients, residual, scaled_diagonal;
     /// Of Options::bends.
-    BufferHandle hinges, hinge_order, hinge_corner_offsets, hinge_corners, hinge_gradients, hinge_moments,
-        bending_residuals, bending_steps, next_bending_steps;
+    BufferHandle hinges, hinge_offsets, hinge_order, hinge_corner_offsets, hinge_corners, hinge_gradients,
+        hinge_moments, bending_residuals, bending_steps, next_bending_steps;
     BufferHandle product, direction, direction_product, vertex_bounds;
     /// One for each sub-step whose pressures are kept, one alone where none are; in one_group all in a single buffer.
     std::vector<BufferHandle> pressures;

@@ -31,14 +31,15 @@ const Kernel& rest_shapes(const Kernel& kernel, const Arrays& a, const BufferVie
 template <class Arrays>
 const Kernel& rest_hinges(const Kernel& kernel, const Arrays& a, const BufferView& rest_positions,
                           const BufferView& rest_hinges) {
-    return set_arguments(kernel, a.cloths, a.vertex_order, a.hinge_order, a.hinges, rest_positions, rest_hinges);
+    return set_arguments(kernel, a.hinge_offsets, a.vertex_order, a.hinge_order, a.hinges, rest_positions, rest_hinges);
 }
 
 /// `part`: of the small steps.
 template <class Arrays>
 const Kernel& bend_hinges(const Kernel& kernel, const Arrays& a, const Buffers& caller, cl_int part) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.hinge_order, a.hinges, a.hinge_corner_offsets,
-                         a.moved, a.motion, a.hinge_gradients, a.hinge_moments, caller.rest_hinges, part);
+    return set_arguments(kernel, a.parameters, a.states, a.hinge_offsets, a.hinge_order, a.hinges,
+                         a.hinge_corner_offsets, a.moved, a.motion, a.hinge_gradients, a.hinge_moments,
+                         caller.rest_hinges, part);
 }
 
 template <class Arrays>

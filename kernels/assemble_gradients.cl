@@ -23,7 +23,8 @@ APSLK_KERNEL void assemble_gradients(__global const apslk_cloth* cloths, __globa
         scheduled_damping(parameters[c].damping_step, parameters[c].sub_steps - 1 - sub_step),
         states[c].adaptive_factor, triangles, moved, gradients, residual, scaled_diagonal, rest_areas, regularization,
         small_step_count(parameters[c]), start_error_left(sub_step, small_step_count(parameters[c])), for_solve != 0,
-        excess_asked_again(states[c].asked_sub_steps, parameters[c].sub_steps), start_errors);
+        excess_asked_again(states[c].asked_sub_steps, parameters[c].sub_steps, parameters[c].most_sub_steps),
+        start_errors);
     store_area_partials(sums.areas, partials, scratch);
     store_partial(partials, APSLK_PARTIAL_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.squares), scratch));
     store_partial(partials, APSLK_PARTIAL_SCALED_RESIDUAL_EVEN, group_sum(sum_of_lanes(sums.scaled_squares), scratch));

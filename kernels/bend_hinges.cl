@@ -24,21 +24,21 @@ APSLK_INLINE float3 ahead_of_start(float4 moved, float4 motion, float time_step,
     return moved.xyz + duration * (APSLK_BENDING_LEAD * before - velocity);
 }
 
-// Gradients times √k, and moments √k (θ − θ⁰).
-APSLK_KERNEL void bend_hinges(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
-                              __global const apslk_solve_state* states, __global const uint* hinge_order,
+// Gradients times √k, and moments √k (θ − θ⁰). Hinges of cloth c: hinge_offsets[c] to hinge_offsets[c + 1].
+APSLK_KERNEL void bend_hinges(__global const apslk_parameters* parameters, __global const apslk_solve_state* states,
+                              __global const uint* hinge_offsets, __global const uint* hinge_order,
                               __global const uint4* hinges, __global const uint* hinge_corner_offsets,
                               __global const float4* moved, __global const float4* motion,
                               __global apslk_hinge_gradients* gradients, __global float* moments,
                               __global const float* rest_hinges, ulong rest_hinge_offset, int part) {
     const uint c = (uint)get_group_id(1);
-    const apslk_cloth cloth = cloths[c];
-    const apslk_range range = share_of(cloth.hinge_count, bends_in(parameters[c], states[c], part, 0));
+    const uint first_hinge = hinge_offsets[c];
+    const apslk_range range = share_of(hinge_offsets[c + 1] - first_hinge, bends_in(parameters[c], states[c], part, 0));
     const float time_step = parameters[c].time_step, duration = time_step / (float)max(parameters[c].small_steps, 1);
     const apslk_free_part free = free_part(parameters + c);
     const float reach = bending_step(parameters[c].bending_iterations, 0).reach;
     for (uint h = range.first; h < range.end; h += APSLK_WORK_GROUP_SIZE) {
-        const uint r = cloth.hinge_begin + h;
+        const uint r = first_hinge + h;
         const uint4 v = hinges[r];
         const uint vertices[4] = {v.x, v.y, v.z, v.w};
         float3 x[4];

@@ -39,8 +39,6 @@ typedef struct {
     apslk_uint patch_begin;
     apslk_uint patch_count;
     apslk_uint rest_area_begin;  // in the caller's arrays
-    apslk_uint hinge_begin;      // in the limiter's arrays, in another order than in the caller's
-    apslk_uint hinge_count;      // 0 where nothing bends
     apslk_uint run;              // entries of the limiter's triangle arrays, of all cloths together
 } apslk_cloth;
 

@@ -7,15 +7,15 @@
 #include "vertex_motion.h"
 #include "work_group.h"
 
-APSLK_KERNEL void rest_hinges(__global const apslk_cloth* cloths, __global const uint* vertex_order,
+APSLK_KERNEL void rest_hinges(__global const uint* hinge_offsets, __global const uint* vertex_order,
                               __global const uint* hinge_order, __global const uint4* hinges,
                               __global const float* rest_positions, ulong rest_position_offset,
                               __global float* rest_hinges, ulong rest_hinge_offset) {
-    const apslk_cloth cloth = cloths[get_group_id(1)];
-    const apslk_range range = share_of(cloth.hinge_count, true);
+    const uint c = (uint)get_group_id(1), first_hinge = hinge_offsets[c];
+    const apslk_range range = share_of(hinge_offsets[c + 1] - first_hinge, true);
     __global const float* positions = rest_positions + rest_position_offset;
     for (uint h = range.first; h < range.end; h += APSLK_WORK_GROUP_SIZE) {
-        const uint r = cloth.hinge_begin + h;
+        const uint r = first_hinge + h;
         const uint4 v = hinges[r];
         const float3 e0 = load_position(positions, vertex_order[v.x]), e1 = load_position(positions, vertex_order[v.y]),
                      o0 = load_position(positions, vertex_order[v.z]), o1 = load_position(positions, vertex_order[v.w]);

@@ -31,8 +31,10 @@ APSLK_INLINE float next_asked_sub_steps(float asked, int sub_steps, float mass_r
     return fmax(APSLK_ASKED_KEPT * asked, by_tension);
 }
 
-// How fast, a step, a sub-step asks again for an excess that it could not take. `asked`: by the calls before.
-APSLK_INLINE float excess_asked_again(float asked, int sub_steps) {
+// How fast, a step, a sub-step asks again for an excess that it could not take. `asked`: by the calls before, which
+// count where sub-steps follow them.
+APSLK_INLINE float excess_asked_again(float asked, int sub_steps, int most_sub_steps) {
+    if (most_sub_steps <= sub_steps) return APSLK_EXCESS_ASKED_AGAIN;
     const float tension = asked * asked / ((float)sub_steps * (float)sub_steps);
     return APSLK_EXCESS_ASKED_AGAIN * clamp(APSLK_LITTLE_TENSION / tension, 1.0f, 2.0f);
 }

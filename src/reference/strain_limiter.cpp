@@ -235,7 +235,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// Both rows of every triangle.
     SolveResult<Real> solve_with_stretches(const ResolvedParameters& parameters) {
         const StretchSolve how{parameters.small_steps, products(parameters),
-                               excess_asked_again(asked_sub_steps, parameters.sub_steps)};
+                               excess_asked_again(asked_sub_steps, parameters.sub_steps, parameters.most_sub_steps)};
         stretches.solve(moved, geometry, area_excess, how);
         return polynomial_result(how.products, stretches.finite());
     }

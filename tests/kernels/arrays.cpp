@@ -191,6 +191,7 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       rest_areas(placed(sources, &Cloth::rest_areas, 1, {1, array_offset})),
       regularization(placed(sources, &Cloth::regularization, 1, {1, array_offset})),
       hinges(never_empty(adjacency.hinges)),
+      hinge_offsets(adjacency.hinge_offsets),
       hinge_order(never_empty(adjacency.hinge_order)),
       hinge_corner_offsets(adjacency.hinge_corner_offsets),
       hinge_corners(never_empty(adjacency.hinge_corners)),

@@ -68,7 +68,7 @@ struct Arrays {
     DeviceArray<float> ordered_rest, ordered_scaling;  ///< what order_triangle_values makes
     DeviceArray<float> caller_positions, caller_velocities, inverse_masses, rest_areas, regularization;
     DeviceArray<cl_uint4> hinges;
-    DeviceArray<std::uint32_t> hinge_order, hinge_corner_offsets, hinge_corners;
+    DeviceArray<std::uint32_t> hinge_offsets, hinge_order, hinge_corner_offsets, hinge_corners;
     DeviceArray<cl_float4> hinge_gradients;  ///< two a hinge
     DeviceArray<float> hinge_moments;
     DeviceArray<cl_float4> bending_residuals, bending_steps, next_bending_steps;

@@ -200,7 +200,7 @@ TEST_CASE("stretch rows: gradients, bound, right-hand side and share are the ref
 }
 
 TEST_CASE("stretch rows: what stands over a ceiling is asked for slowly", "[assemble_gradients]") {
-    const Parameters thirty_parts{.sub_steps = 31, .stepping = Stepping::small_steps};
+    const Parameters thirty_parts{.sub_steps = 31, .most_sub_steps = 62, .stepping = Stepping::small_steps};
     // The sub-steps that calls before asked for, over the 31 of this one, and how fast that is.
     for (const auto& [group, asked, asked_again] :
          {std::tuple{1u, 0.0f, 0.9}, {1u, 0.55f, 0.45 * 0.4 / 0.3025}, {64u, 1.0f, 0.45}, {64u, 7.0f, 0.45}}) {

@@ -274,7 +274,7 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
         {R"("integrator": {"implicit_springs": {"stretch_stiffness": -1}})",
          "integrator.implicit_springs.stretch_stiffness: expected a number ≥ 0, got -1"},
         {R"("integrator": {"stand_alone": {"stretch_stiffness": 1}})",
-         "integrator.stand_alone.stretch_stiffness: unknown key, expected damping, bending"},
+         "integrator.stand_alone.stretch_stiffness: unknown key, expected one of damping, bending"},
         {R"("integrator": {"stand_alone": {"bend_stiffness": 200}}, "strain_limiting": {})",
          "integrator.stand_alone.bend_stiffness: a stand-alone cloth has no springs, expected bending (N·m); those in "
          "front of the filter are integrator.bending_springs"},
