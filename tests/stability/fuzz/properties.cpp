@@ -62,7 +62,10 @@ Check check_outside(const MovingCloth& cloth, const CallFacts& facts, const Para
         double depth = contact[3];
         for (std::size_t k = 0; k < 3; ++k)
             depth -= normal[k] * (cloth.positions[3 * v + k] + time_step * filtered.velocities[3 * v + k]);
-        const double allowed = 4.0 * facts.position_error + 1e-5 * std::abs(contact[3]);
+        // Rounding, and normals that are not quite of length 1: what is left of a push, wherever the body comes from.
+        const double way =
+            std::abs(contact[3]) + facts.greatest_position + time_step * std::hypot(contact[4], contact[5], contact[6]);
+        const double allowed = 4.0 * facts.position_error + 1e-5 * way;
         if (depth > allowed)
             return broken("a vertex ends inside of what it touches",
                           {{"vertex", static_cast<double>(v)}, {"depth", depth}, {"allowed", allowed}});
