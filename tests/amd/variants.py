@@ -54,7 +54,12 @@ NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"
                                             {"APSLK_WARM_START_SUB_STEPS": 8, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 1, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 4, "APSLK_CHEBYSHEV": 1}),
-                **{file: ({"APSLK_KEEPS_CONTACTS": 1},) for file in ("rest_areas.cl", "solve_control.cl")},
+                "rest_areas.cl": ({"APSLK_KEEPS_CONTACTS": 1},),
+                # Positions are read as rest_areas.cl reads them.
+                "rest_hinges.cl": ({"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_INTEGRATES": 0}, {"APSLK_LIMITS_STRETCH": 0},
+                                   {"APSLK_POSITION_STRIDE": 1}, {"APSLK_POSITION_STRIDE": 4}),
+                "bend_hinges.cl": ({"APSLK_INTEGRATES": 0},),
+                "solve_control.cl": ({"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_BENDS": 1, "APSLK_INTEGRATES": 0}),
                 "order_triangle_values.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0}, {"APSLK_POSITIONS_ONLY": 1},
                                              {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1, "APSLK_LIMITS_STRETCH": 0}),
                 "measure_area_change.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0},

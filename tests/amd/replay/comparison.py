@@ -33,14 +33,16 @@ _TYPES = {"float": "f4", "float4": "f4", "uint": "u4", "uint2": "u4", "int": "i4
 def _structs(kernels):
     """{name: numpy type} of the structs in device memory, from the sources."""
     found = {}
-    for header in ("layout.h", "gradients.h"):
+    for header in ("layout.h", "gradients.h", "hinges.h"):
         text = re.sub(r"//.*", "", (kernels / header).read_text(encoding="utf-8"))
         for body, name in _STRUCT.findall(text):
             fields = []
             for kind, names in _FIELD.findall(body):
                 for word in names.split(","):
                     field, _, count = word.strip().partition("[")
-                    if kind in _TYPES:
+                    if kind == "float4":
+                        fields.append((field, "f4", 4))
+                    elif kind in _TYPES:
                         base = _TYPES[kind]
                         fields.append((field, base, int(count[:-1])) if count.rstrip("]").isdigit() else
                                       (field, *base) if isinstance(base, tuple) else (field, base))

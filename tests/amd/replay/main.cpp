@@ -34,6 +34,9 @@ void run(const Scenario& scenario) {
     wait_and_release(limiter.enqueue_rest_areas(queue.get(), views.positions, {areas.get()}));
     if (scenario.options.limits_stretch)
         wait_and_release(limiter.enqueue_rest_shapes(queue.get(), views.positions, {shapes.get()}));
+    const DeviceArray<float> hinges(poison<float>(buffers.rest_hinges.size()));
+    if (scenario.options.bends)
+        wait_and_release(limiter.enqueue_rest_hinges(queue.get(), views.positions, {hinges.get()}));
 
     std::vector<Stats> stats(limiter.cloth_count());
     for (int call = 0; call < scenario.calls; ++call) {

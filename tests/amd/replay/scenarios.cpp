@@ -52,6 +52,11 @@ constexpr Parameters growing(Parameters parameters) {
     return small_steps(parameters);
 }
 
+constexpr Parameters bending(Parameters parameters) {
+    parameters.bending = 1e-4f;
+    return parameters;
+}
+
 constexpr Parameters adaptive(Parameters parameters) {
     parameters.adaptive_threshold = 1;
     parameters.first_regularization = 1.6f;
@@ -113,6 +118,8 @@ constexpr Options step_with_ceiling{.execution = Execution::many_groups, .limits
 constexpr Options contact{.execution = Execution::many_groups, .keeps_contacts = true};
 constexpr Options step_contact_ceiling{
     .execution = Execution::many_groups, .limits_stretch = true, .integrates = true, .keeps_contacts = true};
+constexpr Options step_bending{
+    .execution = Execution::many_groups, .limits_stretch = true, .integrates = true, .bends = true};
 constexpr Options one_group{.execution = Execution::one_group};
 
 Scenario one_cloth(std::string name, const Options& options, const Parameters& parameters, int calls = 1) {
@@ -170,6 +177,8 @@ std::vector<Scenario> small_scenarios() {
         one_cloth("step_stretch_xyzw_64", groups_of_64(xyzw(step_with_ceiling)), falling(growing(p))),
         one_cloth("contact", contact, small_steps(p)),
         one_cloth("step_contact_ceiling_64", groups_of_64(step_contact_ceiling), falling(growing(p))),
+        one_cloth("step_bending", step_bending, bending(falling(with_ceiling(p)))),
+        of("step_bending_64", groups_of_64(step_bending), bending(falling(with_ceiling(p))), small()),
         one_cloth("one_group", one_group, short_solve(p)),
         of("one_group_xyzw_64", groups_of_64(xyzw(one_group)), small_steps(short_solve(p)), small()),
         of("one_group_arrays_64", groups_of_64(structure_of_arrays(one_group)), short_solve(p), small()),
