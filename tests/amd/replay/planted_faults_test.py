@@ -60,8 +60,8 @@ BARRIER_IN_BRANCH = Fault(
                     "{ scratch[l] += scratch[l + half_size]; barrier(CLK_LOCAL_MEM_FENCE); }"),
     "gradient", "measure_area_change", "fault: .*barrier")
 SUM_NOT_FROM_ZERO = Fault(
-    "work_group.h", "    float sum = 0.0f;\n    for (uint g",
-    "    float sum = scratch[get_local_id(0)];\n    for (uint g",
+    "work_group.h", "    float sum = 0.0f;\n    for (uint first",
+    "    float sum = scratch[get_local_id(0)];\n    for (uint first",
     "gradient", "matrix_free_apply_dot", "numbers, the first at")
 LOCKSTEP_OF_64 = Fault(
     "work_group.h", HALVING,
