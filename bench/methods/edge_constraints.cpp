@@ -3,10 +3,10 @@
 
 namespace apsl::methods {
 
-std::vector<EdgeConstraint> edge_constraints(const Cloth& cloth) {
+std::vector<EdgeConstraint> distance_constraints(const Cloth& cloth, std::span<const VertexPair> pairs) {
     std::vector<EdgeConstraint> constraints;
-    constraints.reserve(cloth.topology->edges().size());
-    for (const auto& [a, b] : cloth.topology->edges()) {
+    constraints.reserve(pairs.size());
+    for (const auto& [a, b] : pairs) {
         const double wa = cloth.inverse_masses[a];
         const double wb = cloth.inverse_masses[b];
         if (wa == 0.0 && wb == 0.0) continue;
@@ -15,6 +15,10 @@ std::vector<EdgeConstraint> edge_constraints(const Cloth& cloth) {
                                static_cast<float>((cloth.rest_positions[b] - cloth.rest_positions[a]).norm())});
     }
     return constraints;
+}
+
+std::vector<EdgeConstraint> edge_constraints(const Cloth& cloth) {
+    return distance_constraints(cloth, cloth.topology->edges());
 }
 
 }  // namespace apsl::methods

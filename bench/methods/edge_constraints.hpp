@@ -22,6 +22,8 @@ struct EdgeConstraint {
     }
 };
 
+/// One for each pair of vertices, in their order, but for those with both pinned: nothing could move.
+std::vector<EdgeConstraint> distance_constraints(const Cloth& cloth, std::span<const VertexPair> pairs);
 /// One for each edge of the mesh, in its order, but for those with two pinned ends: nothing could move.
 std::vector<EdgeConstraint> edge_constraints(const Cloth& cloth);
 

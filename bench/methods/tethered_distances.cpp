@@ -141,16 +141,7 @@ std::vector<EdgeConstraint> bending_constraints(const Cloth& cloth) {
     }
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    std::vector<EdgeConstraint> constraints;
-    for (const auto& [a, b] : pairs) {
-        const double wa = cloth.inverse_masses[a];
-        const double wb = cloth.inverse_masses[b];
-        if (wa == 0.0 && wb == 0.0) continue;
-        constraints.push_back({{a, b},
-                               {static_cast<float>(wa), static_cast<float>(wb)},
-                               static_cast<float>((cloth.rest_positions[b] - cloth.rest_positions[a]).norm())});
-    }
-    return constraints;
+    return distance_constraints(cloth, pairs);
 }
 
 // `unseen`: the first of 2 block_size vertices that fill blocks up.

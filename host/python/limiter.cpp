@@ -80,24 +80,21 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
     const Array<float> given_masses = numbers<float>(inverse_masses, "inverse_masses", vertex_count_);
     const Array<float> given_areas = numbers<float>(rest_areas, "rest_areas", triangle_count_);
     py::dict settings(arguments.attr("copy")());
-    // One of the arrays that a call takes beside parameters, where the limiter was made for it.
-    const auto taken = [&](const host::BufferHandle& buffer, const char* name, const char* option, std::size_t rows,
+    // One of the arrays that a call takes beside parameters, where the limiter was made for it: apsl.StrainLimiter sees
+    // to it that it is there.
+    const auto taken = [&](const host::BufferHandle& buffer, const char* name, std::size_t rows,
                            std::size_t floats_a_row) {
         std::optional<Array<float>> given;
         if (!buffer) return given;
-        if (!settings.contains(name))
-            refuse(name, "nothing", std::string("an array of real numbers (limiter made with ") + option + ")");
         const py::object value = settings.attr("pop")(name);
         given = floats_a_row > 1 ? table<float>(value, name, rows, floats_a_row) : numbers<float>(value, name, rows);
         return given;
     };
-    const auto given_regularization =
-        taken(regularization_, "regularization", "regularization_per_triangle", triangle_count_, 1);
-    const auto given_shapes = taken(rest_shapes_, "rest_shapes", "limits_stretch", triangle_count_, 4);
-    const auto given_ceilings =
-        taken(stretch_ceilings_, "stretch_ceiling", "stretch_ceiling_per_triangle", triangle_count_, 1);
-    const auto given_contacts = taken(contacts_, "contacts", "keeps_contacts", vertex_count_, APSLK_CONTACT_SIZE);
-    const auto given_hinges = taken(rest_hinges_, "rest_hinges", "bends", hinge_count_, 2);
+    const auto given_regularization = taken(regularization_, "regularization", triangle_count_, 1);
+    const auto given_shapes = taken(rest_shapes_, "rest_shapes", triangle_count_, 4);
+    const auto given_ceilings = taken(stretch_ceilings_, "stretch_ceiling", triangle_count_, 1);
+    const auto given_contacts = taken(contacts_, "contacts", vertex_count_, APSLK_CONTACT_SIZE);
+    const auto given_hinges = taken(rest_hinges_, "rest_hinges", hinge_count_, 2);
     for_each_field(parameter_fields, [&](const auto& field) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>) {
             const auto& list = field.member == &Parameters::stretch_ceiling ? given_ceilings : given_regularization;

@@ -12,13 +12,6 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-// Cosine of the angle between two normals up to which a way stays on one side of a collider.
-constexpr double same_side = 0.5;
-// m. Nearer than this a way touches.
-constexpr double touching = 1e-5;
-// Of sphere tracing. Each takes a way as far on as the collider is away.
-constexpr int most_traced = 32;
-
 // Off the thickness of the contact.
 Surface contact_surface(const Collider& collider, const Vector& place, const Vector& start) {
     Surface met = surface(collider, place, start);

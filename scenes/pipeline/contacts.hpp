@@ -23,6 +23,13 @@ struct FreeFlight {
 FreeFlight free_flight(const std::array<double, 3>& acceleration, double damping, double time_step);
 FreeFlight free_flight(const Parameters& parameters);
 
+/// Cosine of the angle between two normals up to which a way stays on one side of a collider.
+inline constexpr double same_side = 0.5;
+/// m. Nearer than this a way touches.
+inline constexpr double touching = 1e-5;
+/// Of sphere tracing. Each takes a way as far on as the collider is away.
+inline constexpr int most_traced = 32;
+
 /// Numbers that tell of a vertex's contact.
 inline constexpr std::size_t contact_numbers = 8;
 

@@ -15,15 +15,8 @@ typedef struct {
     uint padding[3];
 } contact_collider;
 
-// Cosine of the angle between two normals up to which a way stays on one side of a collider.
-#define SAME_SIDE 0.5f
-// m. Nearer than this a way touches.
-#define TOUCHING 1e-5f
-#define MOST_TRACED 32
-// m. What begins a step deeper inside than this is led out.
-#define START_DEPTH 1e-4f
-// s. In this time all but 1/e of the depth is gone.
-#define TIME_TO_LEAVE 0.2f
+// SAME_SIDE, TOUCHING, MOST_TRACED, START_DEPTH and TIME_TO_LEAVE are the reference's, given by
+// run/opencl_contacts.cpp.
 
 static inline __attribute__((always_inline)) float3 xyz(global const float* numbers) {
     return (float3)(numbers[0], numbers[1], numbers[2]);

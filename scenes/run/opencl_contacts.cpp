@@ -2,9 +2,12 @@
 #include "run/opencl_contacts.hpp"
 
 #include "pipeline/geometry.hpp"
+#include "pipeline/surface.hpp"
 #include "run/check_opencl.hpp"
 #include "run/opencl_program.hpp"
 
+#include <sstream>
+#include <string>
 #include <vector>
 
 namespace apsl::scenes {
@@ -16,6 +19,15 @@ struct ContactCollider {  // as in fill_contacts.cl
     cl_float turning[9], drift[3], friction;
     cl_uint padding[3];
 };
+
+// The constants of contacts() for its kernel.
+std::string definitions() {
+    std::ostringstream text;
+    text << std::scientific << " -DSAME_SIDE=" << same_side << "f -DTOUCHING=" << touching
+         << "f -DMOST_TRACED=" << most_traced << " -DSTART_DEPTH=" << start_depth
+         << "f -DTIME_TO_LEAVE=" << time_to_leave << 'f';
+    return text.str();
+}
 
 // `place`, `axis` and reach of a shape, as the kernel has them.
 struct Form {
@@ -65,7 +77,7 @@ ContactCollider around(const std::array<double, 3>& origin, const ColliderStep& 
 }  // namespace
 
 OpenClContacts::OpenClContacts(OpenClCloth& cloth, std::size_t vertices, std::size_t colliders)
-    : vertices_(vertices), kernel_(make_kernel(cloth.context(), cloth.device(), "fill_contacts")) {
+    : vertices_(vertices), kernel_(make_kernel(cloth.context(), cloth.device(), "fill_contacts", definitions())) {
     const std::vector<ContactCollider> no_colliders(colliders);
     const std::vector<float> no_contacts(contact_numbers * vertices);
     colliders_ = cloth.make_buffer(std::as_bytes(std::span(no_colliders)), "colliders");

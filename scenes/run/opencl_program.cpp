@@ -20,7 +20,8 @@ std::string build_log(cl_program program, cl_device_id device) {
 
 }  // namespace
 
-host::KernelHandle make_kernel(cl_context context, cl_device_id device, const std::string& name) {
+host::KernelHandle make_kernel(cl_context context, cl_device_id device, const std::string& name,
+                               const std::string& definitions) {
     const auto sources = kernel_sources();
     const std::string_view text =
         std::ranges::find(sources, name + ".cl", [](const host::KernelSource& source) { return source.name; })->text;
@@ -29,7 +30,7 @@ host::KernelHandle make_kernel(cl_context context, cl_device_id device, const st
     cl_int code = CL_SUCCESS;
     const host::ProgramHandle program(clCreateProgramWithSource(context, 1, &begin, &length, &code));
     check_opencl(code, "clCreateProgramWithSource");
-    code = clBuildProgram(program.get(), 1, &device, "-cl-std=CL1.2", nullptr, nullptr);
+    code = clBuildProgram(program.get(), 1, &device, ("-cl-std=CL1.2" + definitions).c_str(), nullptr, nullptr);
     if (code != CL_SUCCESS)
         throw InputError("OpenCL: compiling " + name + " failed with code " + std::to_string(code) + ": " +
                          build_log(program.get(), device));

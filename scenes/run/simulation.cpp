@@ -163,10 +163,10 @@ void Simulation::run_step(int step, FrameReport& report) {
                           report);
     }
 
+    const std::vector<ColliderStep> colliders = collider_steps(step);
     std::optional<Stats> stats;
     if (!std::holds_alternative<std::monostate>(filter_)) {
         const Stopwatch filtering;
-        const std::vector<ColliderStep> colliders = collider_steps(step);
         if (auto* opencl = std::get_if<OpenClFilter>(&filter_)) stats = opencl->filter(cloth_, colliders);
         if (auto* reference = std::get_if<ReferenceFilter>(&filter_)) stats = reference->filter(cloth_, colliders);
         if (auto* custom = std::get_if<CustomFilter>(&filter_)) stats = custom->filter(cloth_);
@@ -184,7 +184,7 @@ void Simulation::run_step(int step, FrameReport& report) {
 
     const Stopwatch after_filter;
     if (!colliders_.empty() && !keeps_contacts(filter_)) {
-        respond_to_collisions(step);
+        respond_to_collisions(colliders);
         report.collision_seconds += after_filter.seconds();
     }
     advance_positions(cloth_, time_step_);
@@ -196,8 +196,7 @@ void Simulation::run_step(int step, FrameReport& report) {
     report.measuring_seconds += measuring_end.seconds();
 }
 
-void Simulation::respond_to_collisions(int step) {
-    const std::vector<ColliderStep> colliders = collider_steps(step);
+void Simulation::respond_to_collisions(std::span<const ColliderStep> colliders) {
     resolve_collisions(cloth_, colliders, time_step_, starts_inside_);
     if (starts_inside_) starts_inside_ = is_inside(colliders);
 }

@@ -49,7 +49,7 @@ private:
     void run_whole_step(int step, FrameReport& report);
     void read_back(FrameReport& report);
     std::vector<ColliderStep> collider_steps(int step) const;
-    void respond_to_collisions(int step);
+    void respond_to_collisions(std::span<const ColliderStep> colliders);
     double start_of(int step) const;
     void move_pins(int step, FrameReport& report);
     void integrate();

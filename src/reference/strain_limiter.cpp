@@ -117,11 +117,13 @@ struct BasicStrainLimiter<Real>::Implementation {
         const auto time_step = static_cast<Real>(parameters.time_step);
         const FreeStep<Real> free(parameters);
         predicted.resize(buffers.positions.size());
-        unlimited.resize(buffers.positions.size());
-        for (std::size_t n = 0; n < predicted.size(); ++n) {
+        for (std::size_t n = 0; n < predicted.size(); ++n)
             predicted[n] =
                 buffers.positions[n] + time_step * free.mean(buffers.velocities[n], n, buffers.inverse_masses);
-            unlimited[n] = free.end(buffers.velocities[n], n, buffers.inverse_masses);
+        if (options.integrates || options.keeps_contacts) {
+            unlimited.resize(predicted.size());
+            for (std::size_t n = 0; n < unlimited.size(); ++n)
+                unlimited[n] = free.end(buffers.velocities[n], n, buffers.inverse_masses);
         }
         if (options.keeps_contacts)
             for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i)

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "filter/stepped.hpp"
 
+#include "support/tolerances.hpp"
+
 #include <apsl/reference.hpp>
+
+#include <catch2/catch.hpp>
 
 namespace apsl::test {
 
@@ -37,6 +41,21 @@ Ended step_with_reference(const MovingCloth& cloth, const Options& options, cons
                     parameters);
     end.stats = limiter.read_stats();
     return end;
+}
+
+BothEnds check_step_against_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
+    const Ended got = step_on_device(cloth, options, parameters),
+                want = step_with_reference(cloth, options, parameters);
+    CHECK(got.stats.status == want.stats.status);
+    CHECK(got.stats.sub_steps == want.stats.sub_steps);
+    std::vector<double> moved(want.positions.size());
+    for (std::size_t n = 0; n < moved.size(); ++n) moved[n] = want.positions[n] - cloth.positions[n];
+    CHECK(difference(got.positions, want.positions) <=
+          0.03 * norm(moved) + elementwise_tolerance(200.0) * norm(want.positions));
+    CHECK(difference(got.velocities, want.velocities) <=
+          0.05 * norm(want.velocities) +
+              elementwise_tolerance(200.0) * norm(want.positions) / static_cast<double>(parameters.time_step));
+    return {got, want};
 }
 
 }  // namespace apsl::test

@@ -19,4 +19,11 @@ Ended step_on_device(StrainLimiter& limiter, const MovingCloth& cloth, const Opt
 Ended step_on_device(const MovingCloth& cloth, const Options& options, const Parameters& parameters);
 Ended step_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters);
 
+struct BothEnds {
+    Ended got, want;
+};
+
+/// Checks that a whole step on the device ends where the reference has it end; both ends, for more checks.
+BothEnds check_step_against_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters);
+
 }  // namespace apsl::test

@@ -22,6 +22,28 @@ Vector vector_of(const cl_float4& v) {
     return Vector(static_cast<double>(v.s[0]), static_cast<double>(v.s[1]), static_cast<double>(v.s[2]));
 }
 
+// Three numbers of vertex v.
+Vector vector_of(const std::vector<float>& numbers, std::size_t v) {
+    return Vector(static_cast<double>(numbers[3 * v]), static_cast<double>(numbers[3 * v + 1]),
+                  static_cast<double>(numbers[3 * v + 2]));
+}
+
+// The end of a whole step of vertex v that nothing limits, kept outside.
+struct FreeEnd {
+    reference::MovingVertex<double> at;
+    bool touches;
+};
+
+FreeEnd free_end(const Cloth& cloth, std::size_t v) {
+    const auto time_step = static_cast<double>(small_steps.time_step);
+    const Vector start = reference::position<double>(cloth.positions, v),
+                 motion = time_step * reference::position<double>(cloth.velocities, v);
+    FreeEnd end{{start + motion, motion, motion}, false};
+    if (cloth.inverse_masses[v] > 0.0)
+        end.touches = end.at.keep(reference::Contact<double>(cloth.contacts, v), time_step, 0.0, 1.0);
+    return end;
+}
+
 // Of free vertices what a launch left and what the reference makes of it, with the sizes that round.
 struct Compared {
     std::vector<double> errors, sizes;
@@ -46,13 +68,10 @@ TEST_CASE("contact in predict_positions: the end of the step is outside", "[pred
         std::size_t i = 0, touched = 0;
         for (const Cloth& cloth : cloths)
             for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v, ++i) {
-                const auto time_step = static_cast<double>(small_steps.time_step);
-                const Vector start = reference::position<double>(cloth.positions, v),
-                             motion = time_step * reference::position<double>(cloth.velocities, v);
-                reference::MovingVertex<double> end{start + motion, motion, motion};
-                if (cloth.inverse_masses[v] > 0.0)
-                    touched += end.keep(reference::Contact<double>(cloth.contacts, v), time_step, 0.0, 1.0);
-                compared.add(vector_of(moved[arrays.vertex_places[i]]), end.position, start.norm() + 1.0);
+                const FreeEnd end = free_end(cloth, v);
+                touched += end.touches;
+                compared.add(vector_of(moved[arrays.vertex_places[i]]), end.at.position,
+                             reference::position<double>(cloth.positions, v).norm() + 1.0);
             }
         CHECK(touched > i / 4);
         CHECK(norm(compared.errors) <= elementwise_tolerance(12) * norm(compared.sizes));
@@ -126,19 +145,14 @@ TEST_CASE("contact in update_velocities: a call that was thrown away still leads
     Compared compared;
     std::size_t touched = 0;
     for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
-        const Vector start = reference::position<double>(cloth.positions, v),
-                     velocity = reference::position<double>(cloth.velocities, v), motion = time_step * velocity;
-        reference::MovingVertex<double> end{start + motion, motion, motion};
-        const bool touches = cloth.inverse_masses[v] > 0.0 &&
-                             end.keep(reference::Contact<double>(cloth.contacts, v), time_step, 0.0, 1.0);
-        touched += touches;
-        if (!touches) {
+        const FreeEnd end = free_end(cloth, v);
+        touched += end.touches;
+        if (!end.touches) {
             for (std::size_t k = 3 * v; k < 3 * v + 3; ++k) CHECK(after[k] == before[k]);
             continue;
         }
-        const Vector got(static_cast<double>(after[3 * v]), static_cast<double>(after[3 * v + 1]),
-                         static_cast<double>(after[3 * v + 2]));
-        compared.add(got, (end.position - start) / time_step, (start.norm() + 1.0) / time_step);
+        const Vector start = reference::position<double>(cloth.positions, v);
+        compared.add(vector_of(after, v), (end.at.position - start) / time_step, (start.norm() + 1.0) / time_step);
     }
     CHECK(touched > cloth.inverse_masses.size() / 4);
     CHECK(norm(compared.errors) <= elementwise_tolerance(12) * norm(compared.sizes));
@@ -159,16 +173,10 @@ TEST_CASE("contact in store_step: a discarded step ends outside, with no speed i
     const std::vector<float> x = arrays.caller_positions.read(), u = arrays.caller_velocities.read();
     Compared compared;
     for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
-        const Vector start = reference::position<double>(cloth.positions, v),
-                     step = time_step * reference::position<double>(cloth.velocities, v);
-        reference::MovingVertex<double> end{start + step, step, step};
-        if (cloth.inverse_masses[v] > 0.0) end.keep(reference::Contact<double>(cloth.contacts, v), time_step, 0.0, 1.0);
-        const Vector position(static_cast<double>(x[3 * v]), static_cast<double>(x[3 * v + 1]),
-                              static_cast<double>(x[3 * v + 2])),
-            velocity(static_cast<double>(u[3 * v]), static_cast<double>(u[3 * v + 1]),
-                     static_cast<double>(u[3 * v + 2]));
-        compared.add(position, end.position, start.norm() + 1.0);
-        compared.add(time_step * velocity, end.motion, start.norm() + 1.0);
+        const FreeEnd end = free_end(cloth, v);
+        const double size = reference::position<double>(cloth.positions, v).norm() + 1.0;
+        compared.add(vector_of(x, v), end.at.position, size);
+        compared.add(time_step * vector_of(u, v), end.at.motion, size);
     }
     CHECK(norm(compared.errors) <= elementwise_tolerance(12) * norm(compared.sizes));
 }

@@ -45,6 +45,7 @@ class StrainLimiter:
                 _opencl.address(device, "device", "Device")
             self._limiter = _core.DeviceLimiter(triangles, vertex_count,
                                                 _opencl.address(context, "context", "Context"), device, **options)
+        self._options: dict[str, Any] = self._limiter.options
 
     def limit(self, positions: npt.ArrayLike, velocities: npt.ArrayLike, inverse_masses: npt.ArrayLike,
               rest_areas: npt.ArrayLike, **parameters: Unpack[Parameters]) -> tuple[npt.NDArray[np.float32], Stats]:
@@ -58,9 +59,9 @@ class StrainLimiter:
         "diverged", and the velocities come back as they were.
         """
         copying = self._with_copies("limit")
-        if self.options["integrates"]:
+        if self._options["integrates"]:
             raise Error("limit: the limiter was made with integrates=True, expected a call of step()")
-        _check_arrays("limit", self.options, {**parameters})
+        _check_arrays("limit", self._options, {**parameters})
         limited, stats = copying.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
         return limited, Stats(**stats)
 
@@ -73,9 +74,9 @@ class StrainLimiter:
         The arguments are those of limit(); velocities are those at the start of the step. Raises Error likewise.
         """
         copying = self._with_copies("step")
-        if not self.options["integrates"]:
+        if not self._options["integrates"]:
             raise Error("step: the limiter was made with integrates=False, expected a call of limit()")
-        _check_arrays("step", self.options, {**parameters})
+        _check_arrays("step", self._options, {**parameters})
         moved, limited, stats = copying.limit(positions, velocities, inverse_masses, rest_areas, **parameters)
         return moved, limited, Stats(**stats)
 
@@ -95,7 +96,7 @@ class StrainLimiter:
         Raises Error for what does not fit, before anything is queued.
         """
         made = self._without_copies("enqueue")
-        options = made.options
+        options = self._options
         layouts = _layouts(made.vertex_count, made.triangle_count, made.hinge_count, options)
         given: dict[str, Any] = {"positions": positions, "velocities": velocities, "inverse_masses": inverse_masses,
                                  "rest_areas": rest_areas}
@@ -128,7 +129,7 @@ class StrainLimiter:
     @property
     def options(self) -> dict[str, Any]:
         """The options as resolved for the device, by name: no zeros and no "automatic" left."""
-        return self._limiter.options
+        return {**self._options}
 
     @property
     def scratch_bytes(self) -> int:
