@@ -40,8 +40,9 @@ class Links(unittest.TestCase):
                     continue
                 links += 1
                 name, _, anchor = link.partition("#")
-                target = (document.parent / name).resolve() if name else document
+                target = (document.parent / name).resolve()
                 with self.subTest(document=document.relative_to(PROJECT).as_posix(), link=link):
+                    self.assertTrue(name, "expected the file before the heading: Doxygen finds none without it")
                     self.assertTrue(target.exists(), "no such file")
                     if anchor and target.suffix == ".md":
                         self.assertIn(anchor, anchors_of(target), "no such heading")
