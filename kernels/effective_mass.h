@@ -34,6 +34,12 @@ APSLK_INLINE float inverse_mass_under_tension(float given, float stiffness) {
     return stiffness > 0.0f ? 1.0f / (1.0f / given + APSLK_MASS_ADDED_PER_STIFFNESS * stiffness) : given;
 }
 
+// What a vertex keeps of its velocity. Mass beyond the ratio that sub-steps aim at resists a change of velocity and
+// carries none: motion of what is too stiff to resolve would else weigh ever more, and feed the cloth around it.
+APSLK_INLINE float velocity_kept(float given, float effective) {
+    return fmin(1.0f, APSLK_AIMED_MASS_RATIO * effective / given);
+}
+
 // The K that counts, from K w'. With what is already added the same tension comes out heavier: the fourth root keeps
 // that from running away.
 APSLK_INLINE float counted_stiffness(float given, float effective, float tension) {

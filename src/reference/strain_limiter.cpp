@@ -326,6 +326,16 @@ struct BasicStrainLimiter<Real>::Implementation {
         }
     }
 
+    /// What vertices under too much tension keep of their motion. `share_left`: of the time step, that the rest carries
+    /// on through.
+    void keep_velocities(Real share_left) {
+        for (std::size_t n = 0; n < motion.size(); ++n) {
+            const Real carried_on = stretches.velocity_kept(n / 3);
+            total_correction[n] += share_left * (carried_on - Real(1)) * motion[n];
+            motion[n] *= carried_on;
+        }
+    }
+
     /// Corrects x_j. In small steps of `parts` parts a displacement of sub-step k changes the velocity too, by parts ·
     /// Δx / Δt, and carries on through the parts left.
     void displace(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
@@ -342,8 +352,10 @@ struct BasicStrainLimiter<Real>::Implementation {
         }
         const auto count = static_cast<Real>(parts);
         // After the last part only positions are mended.
-        if (sub_step < parts)
+        if (sub_step < parts) {
             for (std::size_t n = 0; n < moved.size(); ++n) motion[n] += count * correction[n];
+            if (options.limits_stretch) keep_velocities((carried - Real(1)) / count);
+        }
         if (options.keeps_contacts) keep_contacts(buffers, parameters);
         if (sub_step + 1 < parts) begin_part(inverse_masses, parameters);
     }

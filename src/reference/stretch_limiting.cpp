@@ -180,18 +180,31 @@ void StretchLimiting<Real>::find_tension(std::span<const TriangleGeometry<Real>>
     }
 }
 
+/// 1/kg, of the displacement: of the masses that were solved with and those that its own tension asks for the greater.
+template <class Real>
+Real StretchLimiting<Real>::taken_inverse_mass(std::size_t vertex) const {
+    const Real given = given_inverse_masses_[vertex];
+    if (!(given > Real(0))) return Real(0);
+    return std::min(inverse_masses_[vertex],
+                    Real(1) / (Real(1) / given + Real(mass_added_per_stiffness) * tension_[vertex]));
+}
+
 template <class Real>
 void StretchLimiting<Real>::displacements(bool raises_masses, std::vector<Real>& displacements) const {
     const TriangleVector<Real> sums = system_.J.transpose() * y_;
     displacements.resize(static_cast<std::size_t>(sums.size()));
     for (std::size_t n = 0; n < displacements.size(); ++n) {
         const std::size_t i = n / 3;
-        const Real given = given_inverse_masses_[i];
-        const Real asked =
-            given > Real(0) ? Real(1) / (Real(1) / given + Real(mass_added_per_stiffness) * tension_[i]) : Real(0);
-        displacements[n] = -(raises_masses ? std::min(inverse_masses_[i], asked) : inverse_masses_[i]) *
-                           sums[static_cast<Eigen::Index>(n)];
+        displacements[n] =
+            -(raises_masses ? taken_inverse_mass(i) : inverse_masses_[i]) * sums[static_cast<Eigen::Index>(n)];
     }
+}
+
+template <class Real>
+Real StretchLimiting<Real>::velocity_kept(std::size_t vertex) const {
+    const Real given = given_inverse_masses_[vertex];
+    return given > Real(0) ? std::min(Real(1), Real(APSLK_AIMED_MASS_RATIO) * taken_inverse_mass(vertex) / given)
+                           : Real(1);
 }
 
 template <class Real>

@@ -52,6 +52,9 @@ public:
     /// −w' Σ y ∇C of every vertex, [3V]; with `raises_masses` where the tension just found asks for more mass, with
     /// that.
     void displacements(bool raises_masses, std::vector<Real>& displacements) const;
+    /// The share of its velocity that a vertex keeps after the last solve. Mass beyond the ratio that sub-steps aim at
+    /// resists a change of velocity and carries none.
+    Real velocity_kept(std::size_t vertex) const;
     /// The masses of the next sub-step.
     void raise_masses();
 
@@ -66,6 +69,7 @@ private:
     ConstraintRow<Real> limited_row(std::size_t a, std::span<const Real> positions, const ConstraintRow<Real>& area,
                                     const StretchSolve& how);
     void find_tension(std::span<const TriangleGeometry<Real>> geometry);
+    Real taken_inverse_mass(std::size_t vertex) const;
 
     const Topology* topology_ = nullptr;
     std::span<const Real> given_inverse_masses_, rest_areas_;
