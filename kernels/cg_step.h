@@ -21,16 +21,16 @@ APSLK_INLINE float2 cg_coefficients(float residual, float curvature, float previ
 
 // p = r + βp, s = q + βs, y += αp, r −= αs; this work-item's part of ‖r‖² and of r̄·r̄.
 APSLK_INLINE float2 advance_cg(apslk_cloth cloth, bool active, float step, float beta, bool first_iteration,
-                               __global float4* residual, __global const float4* scaled_diagonal,
-                               __global const float4* product, __global float4* direction,
-                               __global float4* direction_product, __global float4* pressure) {
-    const uint begin = cloth.triangle_begin / 4u;
-    const apslk_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
-    float4 squares = (float4)(0.0f), scaled_squares = (float4)(0.0f);
+                               __global numbers* residual, __global const numbers* scaled_diagonal,
+                               __global const numbers* product, __global numbers* direction,
+                               __global numbers* direction_product, __global numbers* pressure) {
+    const uint begin = cloth.triangle_begin / APSLK_NUMBERS;
+    const apslk_range range = share_of((cloth.triangle_count + APSLK_NUMBERS - 1u) / APSLK_NUMBERS, active);
+    numbers squares = (numbers)(0.0f), scaled_squares = (numbers)(0.0f);
     for (uint n = range.first; n < range.end; n += APSLK_WORK_GROUP_SIZE) {
         const uint i = begin + n;
-        const float4 q = product[i];
-        float4 r = residual[i], p = r, s = q, y = (float4)(0.0f);
+        const numbers q = product[i];
+        numbers r = residual[i], p = r, s = q, y = (numbers)(0.0f);
         if (!first_iteration) {  // uniform; what a former solve left behind is never read
             p += beta * direction[i];
             s += beta * direction_product[i];
@@ -45,7 +45,7 @@ APSLK_INLINE float2 advance_cg(apslk_cloth cloth, bool active, float step, float
         squares += r * r * scaled_diagonal[i];
         scaled_squares += r * r;
     }
-    return (float2)(sum_of_components(squares), sum_of_components(scaled_squares));
+    return (float2)(sum_of_numbers(squares), sum_of_numbers(scaled_squares));
 }
 
 #endif

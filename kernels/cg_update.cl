@@ -14,9 +14,10 @@ APSLK_INLINE void store_or_hand_on(__global float* partials, uint even_kind, uin
 }
 
 APSLK_KERNEL void cg_update(__global const apslk_cloth* cloths, __global apslk_solve_state* states,
-                            __global float* partials, __global float4* residual, __global const float4* scaled_diagonal,
-                            __global const float4* product, __global float4* direction,
-                            __global float4* direction_product, __global float4* pressure, int iteration) {
+                            __global float* partials, __global numbers* residual,
+                            __global const numbers* scaled_diagonal, __global const numbers* product,
+                            __global numbers* direction, __global numbers* direction_product,
+                            __global numbers* pressure, int iteration) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const uint slot = (uint)iteration & 1u;

@@ -46,10 +46,10 @@ APSLK_INLINE void iterate_in_group(apslk_solve* solve, bool guessing, __global c
         group_memory_barrier();
         if (guessing) {
             const float dot =
-                group_sum(guess_dot(*cloth, true, (__global float4*)residual, (__global float4*)pressure), scratch);
-            const float2 sums = scale_guess(*cloth, true, guess_scale(dot, curvature), (__global float4*)residual,
-                                            (__global const float4*)scaled_diagonal, (__global const float4*)product,
-                                            (__global float4*)pressure);
+                group_sum(guess_dot(*cloth, true, (__global numbers*)residual, (__global numbers*)pressure), scratch);
+            const float2 sums = scale_guess(*cloth, true, guess_scale(dot, curvature), (__global numbers*)residual,
+                                            (__global const numbers*)scaled_diagonal, (__global const numbers*)product,
+                                            (__global numbers*)pressure);
             solve->residual = group_sum(sums.x, scratch);
             solve->scaled_residual = group_sum(sums.y, scratch);
             group_memory_barrier();
@@ -60,9 +60,9 @@ APSLK_INLINE void iterate_in_group(apslk_solve* solve, bool guessing, __global c
                                                     solve->previous_step, solve->iterations);
         going_on = coefficients.x > 0.0f;
         const float2 sums = advance_cg(*cloth, going_on, coefficients.x, coefficients.y, solve->iterations == 0,
-                                       (__global float4*)residual, (__global const float4*)scaled_diagonal,
-                                       (__global const float4*)product, (__global float4*)direction,
-                                       (__global float4*)direction_product, (__global float4*)pressure);
+                                       (__global numbers*)residual, (__global const numbers*)scaled_diagonal,
+                                       (__global const numbers*)product, (__global numbers*)direction,
+                                       (__global numbers*)direction_product, (__global numbers*)pressure);
         const float squares = group_sum(sums.x, scratch), scaled_squares = group_sum(sums.y, scratch);
         group_memory_barrier();
         if (going_on) {

@@ -7,8 +7,8 @@
 
 // Moves 8 B a triangle.
 APSLK_KERNEL void measure_guess(__global const apslk_cloth* cloths, __global const apslk_solve_state* states,
-                                __global float* partials, __global const float4* residual,
-                                __global const float4* pressure) {
+                                __global float* partials, __global const numbers* residual,
+                                __global const numbers* pressure) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const float dot = guess_dot(cloths[c], !states[c].stopped, residual, pressure);
@@ -17,9 +17,9 @@ APSLK_KERNEL void measure_guess(__global const apslk_cloth* cloths, __global con
 
 // Moves r, y, α D, A y read, r, y written: 24 B a triangle.
 APSLK_KERNEL void start_from_guess(__global const apslk_cloth* cloths, __global const apslk_solve_state* states,
-                                   __global float* partials, __global float4* residual,
-                                   __global const float4* scaled_diagonal, __global const float4* product,
-                                   __global float4* pressure) {
+                                   __global float* partials, __global numbers* residual,
+                                   __global const numbers* scaled_diagonal, __global const numbers* product,
+                                   __global numbers* pressure) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const uint groups = (uint)get_num_groups(0);

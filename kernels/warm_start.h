@@ -26,14 +26,14 @@ APSLK_INLINE void copy_pressures(apslk_cloth cloth, __global float* to, __global
 }
 
 // This work-item's part of r̄·y₀.
-APSLK_INLINE float guess_dot(apslk_cloth cloth, bool active, __global const float4* residual,
-                             __global const float4* pressure) {
-    const uint begin = cloth.triangle_begin / 4u;
-    const apslk_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
-    float4 sum = (float4)(0.0f);
+APSLK_INLINE float guess_dot(apslk_cloth cloth, bool active, __global const numbers* residual,
+                             __global const numbers* pressure) {
+    const uint begin = cloth.triangle_begin / APSLK_NUMBERS;
+    const apslk_range range = share_of((cloth.triangle_count + APSLK_NUMBERS - 1u) / APSLK_NUMBERS, active);
+    numbers sum = (numbers)(0.0f);
     for (uint n = range.first; n < range.end; n += APSLK_WORK_GROUP_SIZE)
         sum += residual[begin + n] * pressure[begin + n];
-    return sum_of_components(sum);
+    return sum_of_numbers(sum);
 }
 
 // t = r̄·y₀ / y₀·Ay₀; 0, which drops the guess, where that is no number.
@@ -43,15 +43,15 @@ APSLK_INLINE float guess_scale(float dot, float curvature) {
 }
 
 // y = t y₀, r = b − t A y₀ with A y₀ in `product`; this work-item's part of ‖r‖² and of r̄·r̄.
-APSLK_INLINE float2 scale_guess(apslk_cloth cloth, bool active, float scale, __global float4* residual,
-                                __global const float4* scaled_diagonal, __global const float4* product,
-                                __global float4* pressure) {
-    const uint begin = cloth.triangle_begin / 4u;
-    const apslk_range range = share_of((cloth.triangle_count + 3u) / 4u, active);
-    float4 squares = (float4)(0.0f), scaled_squares = (float4)(0.0f);
+APSLK_INLINE float2 scale_guess(apslk_cloth cloth, bool active, float scale, __global numbers* residual,
+                                __global const numbers* scaled_diagonal, __global const numbers* product,
+                                __global numbers* pressure) {
+    const uint begin = cloth.triangle_begin / APSLK_NUMBERS;
+    const apslk_range range = share_of((cloth.triangle_count + APSLK_NUMBERS - 1u) / APSLK_NUMBERS, active);
+    numbers squares = (numbers)(0.0f), scaled_squares = (numbers)(0.0f);
     for (uint n = range.first; n < range.end; n += APSLK_WORK_GROUP_SIZE) {
         const uint i = begin + n;
-        float4 r = residual[i], y = (float4)(0.0f);
+        numbers r = residual[i], y = (numbers)(0.0f);
         if (scale != 0.0f) {  // uniform; a dropped guess and its product may be anything
             y = scale * pressure[i];
             r -= scale * product[i];
@@ -61,7 +61,7 @@ APSLK_INLINE float2 scale_guess(apslk_cloth cloth, bool active, float scale, __g
         squares += r * r * scaled_diagonal[i];
         scaled_squares += r * r;
     }
-    return (float2)(sum_of_components(squares), sum_of_components(scaled_squares));
+    return (float2)(sum_of_numbers(squares), sum_of_numbers(scaled_squares));
 }
 
 #endif

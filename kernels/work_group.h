@@ -96,9 +96,21 @@ APSLK_INLINE float group_max(float value, __local float* scratch) {
     return value;
 }
 
-APSLK_INLINE float sum_of_components(float4 v) {
+// Numbers of a vector of triangles that a work-item takes at once. On a CPU four, side by side; otherwise one, so that
+// a cloth of few triangles leaves no lane without work.
+#if APSLK_WORK_GROUP_SIZE == 1
+#define APSLK_NUMBERS 4u
+typedef float4 numbers;
+APSLK_INLINE float sum_of_numbers(numbers v) {
     return v.x + v.y + v.z + v.w;
 }
+#else
+#define APSLK_NUMBERS 1u
+typedef float numbers;
+APSLK_INLINE float sum_of_numbers(numbers v) {
+    return v;
+}
+#endif
 
 // The partial results of one kind, one float for each of `groups` groups, of the cloth of this work-group.
 APSLK_INLINE __global float* partials_of(__global float* partials, uint kind, uint groups) {
