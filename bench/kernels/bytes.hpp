@@ -22,6 +22,7 @@ struct Traffic {
     std::string_view kernel;
     double per_vertex, per_triangle, per_entry;
     double per_triangle_saved_first = 0;  ///< what the first iteration of a solve need not read
+    double per_stretch_row = 0;           ///< what a triangle's second row adds with a stretch ceiling
 };
 
 // An index, an offset or a float is 4 bytes; position with inverse mass (float4) 16; a caller's vector 12;
@@ -32,17 +33,18 @@ constexpr std::array traffic_table{
     Traffic{"predict_positions", 48, 0, 0},
     // triangle_order, rest area read, ordered rest area written
     Traffic{"order_triangle_values", 0, 12, 0},
-    // moved; indices 12, ordered rest area read; record, residual, scaled_diagonal written
-    Traffic{"assemble_gradients", 16, 56, 0},
+    // moved; indices 12, ordered rest area read; record, residual, scaled_diagonal written. The second row: rest shape
+    // with ceiling 16 and excess of the start read, excess held read and written, gradients and right-hand side written
+    Traffic{"assemble_gradients", 16, 56, 0, 0, 56},
     // moved, motion; indices 12, ordered rest area read, start error written
     Traffic{"measure_step", 32, 20, 0},
     // vertex_order, motion, velocity read; moved, motion, total_correction written
     Traffic{"start_small_steps", 80, 0, 0},
     // corner offset, bound written; corners 12, gradients 24 read
-    Traffic{"bound_vertices", 8, 36, 0},
+    Traffic{"bound_vertices", 8, 36, 0, 0, 24},
     // corner offset, patch_vertices; corners 12, gradients 24, local_triangles 6, right-hand side, y and the y before
     // read, y after written; the first two products find no y before, the first no y either
-    Traffic{"chebyshev_step", 8, 58, 0, 12},
+    Traffic{"chebyshev_step", 8, 58, 0, 12, 40},
     // row offset, record read; column 4 and shared code 1 read, value written
     Traffic{"assemble_pressure_csr", 0, 36, 9},
     // row offset, residual read, product written; value and column read
@@ -54,7 +56,7 @@ constexpr std::array traffic_table{
     // iteration finds no direction, direction_product and pressure to read
     Traffic{"cg_update", 0, 40, 0, 12},
     // corner offset, moved read and written; corners 12, gradients 24, pressure read
-    Traffic{"gather_displacements", 36, 40, 0},
+    Traffic{"gather_displacements", 36, 40, 0, 0, 28},
     // moved; indices 12, ordered rest area read
     Traffic{"measure_area_change", 16, 16, 0},
     // vertex_order, moved, position, velocity read, velocity written
