@@ -298,7 +298,7 @@ on the device; there are $left and $device_left"
       ;;
     frames_*)
       run_part "$name" "$bound" "$name.json" "$bundle/bin/traced_cloth" --device "$number" --grid "$grid" --frames 10 \
-        --bench --kernels "$bundle/cloth_step.cl" --trace "$out/$name.json"
+        --kernels "$bundle/touch_sphere.cl" --trace "$out/$name.json"
       ;;
   esac
 done

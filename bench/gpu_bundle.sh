@@ -27,7 +27,7 @@ mkdir -p "$bundle/bin" "$bundle/lib" "$bundle/lib_of_compiler"
 for program in "${programs[@]}"; do
   cp "$build/$program" "$bundle/bin"
 done
-cp "$source/bench/gpu.sh" "$source/scenes/embedded/cloth_step.cl" "$bundle"
+cp "$source/bench/gpu.sh" "$source/scenes/embedded/touch_sphere.cl" "$bundle"
 
 # glibc and its loader are the machine's own. What comes with the compiler lies apart: bench/gpu.sh takes the machine's
 # where that is new enough, for the driver may need it newer than ours.

@@ -1,19 +1,16 @@
 #!/usr/bin/env bash
-# Is the limiter as fast inside a pipeline as alone? Runs scenes/embedded and bench/kernels in turns, on the same grids
-# with the same settings (10 sub-steps of exactly 3 CG iterations), and prints for each round what a call of the limiter
-# takes: in the pipeline (from the end of the stage before to the end of the limiter's last command, profiling events),
-# alone (wall time from the call to its end, the wait included), and the sum of its kernels alone (profiling events,
-# without what lies between them). A small cloth's call is one launch, and alone it also pays for sending it off and for
-# waking up; there the kernels are what to compare with. Also the host's waits within frames, counted as
-# tests/embed/embedded_example_test.py does.
+# Is a call as fast inside a pipeline as alone? Runs scenes/embedded twice over the same frames, traced, and prints for
+# each round what a call takes: in the pipeline (from the end of the stage before to the end of the call's last command,
+# profiling events), and alone (wall time from the call to its end, where the host waits for each stage before it queues
+# the next). Also the host's waits within frames, counted as tests/embed/embedded_example_test.py does.
 #     bench/embedded/embedded.sh [ROUNDS, 5 where not given]
-# About two minutes on two quiet cores; on a busy machine the ratios mean little.
+# About three minutes on two quiet cores; on a busy machine the ratios mean little.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 rounds="${1:-5}"
 cmake --preset bench >/dev/null
-cmake --build --preset bench --target apsl_kernel_bench traced_cloth embedded_cloth_gated
+cmake --build --preset bench --target traced_cloth embedded_cloth_gated
 # One OpenCL driver a process: several at once have crashed.
 if [[ -z "${OCL_ICD_VENDORS:-}" && -f /etc/OpenCL/vendors/pocl.icd && ! -e /dev/nvidiactl && ! -e /dev/kfd ]]; then
   export OCL_ICD_VENDORS=/etc/OpenCL/vendors/pocl.icd
@@ -22,13 +19,14 @@ work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
 for grid in 33 129 513; do
+  frames=$((grid > 256 ? 5 : 20))
   APSL_TEST_CALLS="$work/calls_$grid.json" build/bench/tests/embed/embedded_cloth_gated --grid "$grid" --frames 2 >/dev/null
   for ((round = 0; round < rounds; ++round)); do
-    build/bench/bench/embedded/traced_cloth --grid "$grid" --frames 10 --bench \
-      --trace "$work/trace_${grid}_$round.json" >/dev/null
-    build/bench/bench/kernels/apsl_kernel_bench --grids "${grid}x$grid" --awkward-grids none --cloths 0 \
-      --copy-megabytes 8 --filter "^filter_call/consistent matrix_free/" --out "$work/alone_${grid}_$round.json" \
-      >/dev/null 2>&1
+    for wait in "" --wait; do
+      # shellcheck disable=SC2086 # an option or none
+      build/bench/bench/embedded/traced_cloth --grid "$grid" --frames "$frames" $wait \
+        --trace "$work/trace${wait}_${grid}_$round.json" >/dev/null
+    done
   done
 done
 
@@ -39,31 +37,31 @@ import sys
 from pathlib import Path
 
 work, rounds = Path(sys.argv[1]), int(sys.argv[2])
-DEVICE, WARM_UP_FRAMES = 2, 2
-print(f"{'triangles':>9} {'pipeline, ms':>13} {'alone, ms':>10} {'kernels, ms':>12} {'pipeline/alone':>15} "
-      f"{'pipeline/kernels':>17}")
+HOST, DEVICE, WARM_UP_FRAMES = 1, 2, 2
+
+
+def median_call(path, row):
+    """s"""
+    events = json.loads(path.read_text())["traceEvents"]
+    return 1e-6 * statistics.median(event["dur"] for event in events if event["ph"] == "X" and event["tid"] == row
+                                    and event["name"] == "step" and event["args"]["frame"] >= WARM_UP_FRAMES)
+
+
+print(f"{'triangles':>9} {'pipeline, ms':>13} {'alone, ms':>10} {'pipeline/alone':>15}")
 for grid in (33, 129, 513):
-    ratios, times = [], []
+    triangles = 2 * (grid - 1) ** 2
+    times = []
     for number in range(rounds):
-        events = json.loads((work / f"trace_{grid}_{number}.json").read_text())["traceEvents"]
-        pipeline = 1e-6 * statistics.median(
-            event["dur"] for event in events if event["ph"] == "X" and event["tid"] == DEVICE
-            and event["name"] == "limit_strain" and event["args"]["frame"] >= WARM_UP_FRAMES)
-        rows = json.loads((work / f"alone_{grid}_{number}.json").read_text())
-        alone, = (row["median_seconds"] for row in rows if row["quantity"] == "filter_call")
-        kernels = sum(row["median_seconds"] for row in rows if row["quantity"] == "phase" and row["clock"] == "device")
-        triangles = rows[0]["triangles"]
-        ratios.append((pipeline / alone, pipeline / kernels))
-        times.append((pipeline, alone, kernels))
-        print(f"{triangles:9} {1e3 * pipeline:13.3f} {1e3 * alone:10.3f} {1e3 * kernels:12.3f} {ratios[-1][0]:15.3f} "
-              f"{ratios[-1][1]:17.3f}")
+        times.append((median_call(work / f"trace_{grid}_{number}.json", DEVICE),
+                      median_call(work / f"trace--wait_{grid}_{number}.json", HOST)))
+        pipeline, alone = times[-1]
+        print(f"{triangles:9} {1e3 * pipeline:13.3f} {1e3 * alone:10.3f} {pipeline / alone:15.3f}")
     calls = json.loads((work / f"calls_{grid}.json").read_text())["frames"]
     waits = calls["host_waits"] + calls["polls"] + calls["blocking_calls"]
-    by_alone, by_kernels = (statistics.median(column) for column in zip(*ratios))
-    print(f"{triangles:9} median of {rounds} rounds {by_alone:37.3f} {by_kernels:17.3f}   "
-          f"host waits within frames: {waits}")
+    ratio = statistics.median(pipeline / alone for pipeline, alone in times)
+    print(f"{triangles:9} median of {rounds} rounds {ratio:22.3f}   host waits within frames: {waits}")
     # What else the machine does only adds to a time.
-    pipeline, alone, kernels = (min(column) for column in zip(*times))
-    print(f"{triangles:9} {1e3 * pipeline:13.3f} {1e3 * alone:10.3f} {1e3 * kernels:12.3f} {pipeline / alone:15.3f} "
-          f"{pipeline / kernels:17.3f}   least of {rounds} rounds\n")
+    pipeline, alone = (min(column) for column in zip(*times))
+    print(f"{triangles:9} {1e3 * pipeline:13.3f} {1e3 * alone:10.3f} {pipeline / alone:15.3f}   "
+          f"least of {rounds} rounds\n")
 PYTHON

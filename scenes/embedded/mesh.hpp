@@ -38,12 +38,6 @@ inline std::array<float, 3> edge(const std::vector<float>& positions, std::uint3
     return {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
 }
 
-/// m
-inline float distance(const std::vector<float>& positions, std::uint32_t a, std::uint32_t b) {
-    const auto [x, y, z] = edge(positions, a, b);
-    return std::hypot(x, y, z);
-}
-
 /// m²
 inline float area(const std::vector<float>& positions, const apsl::Triangle& triangle) {
     const auto u = edge(positions, triangle[0], triangle[1]), v = edge(positions, triangle[0], triangle[2]);

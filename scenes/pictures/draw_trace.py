@@ -31,7 +31,7 @@ def read_rows(path):
     except OSError as error:
         raise PictureError(f"{path}: cannot be read ({error.strerror})") from None
     except (ValueError, KeyError, TypeError) as error:
-        raise PictureError(f"{path}: not a trace of embedded_cloth ({error!r})") from None
+        raise PictureError(f"{path}: not a trace of traced_cloth ({error!r})") from None
     host, device = ([s[1:] for s in slices if s[0] == row] for row in (HOST, DEVICE))
     if not device or [s[:2] for s in host] != [s[:2] for s in device]:
         raise PictureError(f"{path}: expected the same stages on the host's row and on the device's, at least one")
@@ -88,7 +88,7 @@ def draw(host, device, frame, path):
 
 def run(arguments):
     parser = OneLineParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("trace", metavar="TRACE", help="what `embedded_cloth --trace` wrote")
+    parser.add_argument("trace", metavar="TRACE", help="what `traced_cloth --trace` wrote")
     parser.add_argument("--frame", type=int, default=8, help="the frame to draw alone")
     parser.add_argument("--out", required=True, metavar="FILE.png")
     options = parser.parse_args(arguments)
