@@ -32,6 +32,7 @@ run paper_fig1 paper_fig1
 run paper_fig1_unfiltered paper_fig1 --set strain_limiting=null
 run paper_fig6 paper_fig6
 run stand_alone_curtain stand_alone_curtain
+run pushed_curtain pushed_curtain
 run twist twist
 run skirt skirt
 run sphere_drape sphere_drape
@@ -39,6 +40,7 @@ run sphere_drape sphere_drape
 scenes/pictures/side_by_side.py "$runs/curtain_unfiltered" "$runs/curtain" --frame 30 --out docs/pictures/side_by_side.png
 scenes/pictures/side_by_side.py "$runs/paper_fig1_unfiltered" "$runs/paper_fig1" --frame 45 --out docs/pictures/paper_fig1.png
 still paper_fig6 110 --zoom 1.2
+still pushed_curtain 150 --zoom 1.3 --views cloth,stretch --red-stretch 1.2
 still twist 150
 still skirt 179
 still sphere_drape 89 --zoom 1.45

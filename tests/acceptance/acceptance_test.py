@@ -114,6 +114,28 @@ class StretchCeiling(Case):
         self.assertLessEqual(frames[-1]["max_area_change"], 0.01)
 
 
+class PushedCurtain(Case):
+    """A ball that moves through a curtain, all of it on the device."""
+
+    @classmethod
+    def run_scenes(cls):
+        cls.report = cls.run_scene("pushed", "pushed_curtain.json")
+
+    def test_areas_and_edges_are_held_in_contact(self):
+        frames = self.report["frames"]
+        self.assertTrue(all(frame["status"] == "ok" for frame in frames))
+        self.assertLessEqual(max(frame["max_edge_stretch"] for frame in frames), 1.15)
+        self.assertLessEqual(sorted(frame["max_area_change"] for frame in frames)[-len(frames) // 20], 0.02)
+        self.assertLessEqual(max(frame["max_area_change"] for frame in frames), 0.1)
+
+    def test_energy_rises_only_while_the_ball_pushes(self):
+        total = [self.report["start_energy"]["total"], *(frame["energy"]["total"] for frame in self.report["frames"])]
+        first_touch = next(n for n in range(72, len(total)) if total[n] > total[n - 1] + 1e-3)
+        self.assertGreater(first_touch, 100)  # the ball starts to move in frame 72, 0.8 m away
+        self.assertLess(max(total[:first_touch]), 0.01)
+        self.assertGreater(max(total[first_touch:]), min(total[:first_touch]) + 0.1)
+
+
 class PaperFigures(Case):
     """The paper's 96.3 % to 1.94 % (Fig. 1) and 4.77 % in the stand-alone mode (Fig. 6)."""
 

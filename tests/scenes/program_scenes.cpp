@@ -31,7 +31,7 @@ TEST_CASE("devices are listed with their numbers, the version and a short help a
 TEST_CASE("every scene of the project is valid and runs") {
     const std::string scene =
         GENERATE("curtain.json", "curtain_unfiltered.json", "sphere_drape.json", "stand_alone_curtain.json",
-                 "twist.json", "skirt.json", "paper_fig1.json", "paper_fig6.json");
+                 "pushed_curtain.json", "twist.json", "skirt.json", "paper_fig1.json", "paper_fig6.json");
     CAPTURE(scene);
     const ProgramRun validated = run_apsl("validate " + scene_path(scene));
     CHECK(validated.exit_code == 0);
