@@ -109,7 +109,8 @@ apsl::Options options_from(const apsl_options* options) {
             .stretch_ceiling_per_triangle = o.stretch_ceiling_per_triangle != 0,
             .integrates = o.integrates != 0,
             .keeps_contacts = o.keeps_contacts != 0,
-            .bends = o.bends != 0};
+            .bends = o.bends != 0,
+            .acceleration_per_vertex = o.acceleration_per_vertex != 0};
 }
 
 apsl::Parameters parameters_from(const apsl_parameters& p) {
@@ -207,6 +208,7 @@ apsl_options apsl_default_options(void) {
             o.integrates,
             o.keeps_contacts,
             o.bends,
+            o.acceleration_per_vertex,
             {}};
 }
 
@@ -336,7 +338,8 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
                                   .rest_shapes = view_from(buffers->rest_shapes),
                                   .stretch_ceilings = view_from(buffers->stretch_ceilings),
                                   .contacts = view_from(buffers->contacts),
-                                  .rest_hinges = view_from(buffers->rest_hinges)};
+                                  .rest_hinges = view_from(buffers->rest_hinges),
+                                  .accelerations = view_from(buffers->accelerations)};
         const cl_event end = limiter->limiter.enqueue(queue, views, list, events(wait_count, wait_list));
         hand_over(end, event);
     });

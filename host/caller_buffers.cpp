@@ -75,6 +75,8 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
                    "stretch_ceiling_per_triangle");
     check_optional(options.keeps_contacts, buffers.contacts, APSLK_CONTACT_SIZE * counts.vertices, "contacts",
                    "keeps_contacts");
+    check_optional(options.acceleration_per_vertex, buffers.accelerations, position_floats(options, counts),
+                   "accelerations", "acceleration_per_vertex");
 }
 
 const BufferView& corrected(const Buffers& buffers) {

@@ -76,6 +76,7 @@ DeviceArrays make_device_arrays(DeviceMemory& memory, const Adjacency& adjacency
     const std::size_t moving_vertices = options.positions_only ? 1 : vertex_count;
     arrays.motion = buffer(moving_vertices * sizeof(cl_float4));
     arrays.total_correction = buffer(moving_vertices * sizeof(cl_float4));
+    if (options.acceleration_per_vertex) arrays.accelerations = buffer(vertex_count * sizeof(cl_float4));
     const std::size_t error_runs = options.limits_stretch ? APSLK_HELD_EXCESS + 1 : 1;
     arrays.start_errors = zeroed(options.positions_only ? 1 : error_runs * triangle_count);
     arrays.gradients = buffer(row_count * gradient_bytes);

@@ -20,6 +20,7 @@ struct DeviceArrays {
     BufferHandle patches, patch_vertices, local_triangles;  ///< of the matrix applied from patches
     BufferHandle row_offsets, columns, shared, values;      ///< of the matrix applied by its pattern
     BufferHandle ordered_rest, ordered_scaling;
+    BufferHandle accelerations;  ///< of Options::acceleration_per_vertex
     BufferHandle moved, motion, total_correction, start_errors, gradients, residual, scaled_diagonal;
     /// Of Options::bends.
     BufferHandle hinges, hinge_offsets, hinge_order, hinge_corner_offsets, hinge_corners, hinge_gradients,

@@ -10,6 +10,12 @@
 
 namespace apsl::host::arguments {
 
+/// `array` where each vertex has an acceleration of its own, for a kernel that has an argument for it only then.
+template <class Array>
+const Array* where_accelerated(const Array& array, const Buffers& caller) {
+    return caller.accelerations.buffer ? &array : nullptr;
+}
+
 template <class Arrays>
 const Kernel& set_parameters(const Kernel& kernel, const Arrays& a, const apslk_parameter_block& block, cl_uint first,
                              cl_uint count) {
@@ -39,7 +45,7 @@ template <class Arrays>
 const Kernel& bend_hinges(const Kernel& kernel, const Arrays& a, const Buffers& caller, cl_int part) {
     return set_arguments(kernel, a.parameters, a.states, a.hinge_offsets, a.hinge_order, a.hinges,
                          a.hinge_corner_offsets, a.moved, a.motion, a.hinge_gradients, a.hinge_moments,
-                         caller.rest_hinges, part);
+                         caller.rest_hinges, part, where_accelerated(a.accelerations, caller));
 }
 
 template <class Arrays>
@@ -55,7 +61,8 @@ template <class Arrays>
 const Kernel& predict_positions(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order, a.moved,
                          a.motion, caller.positions, corrected(caller), caller.inverse_masses,
-                         or_any(caller.contacts, caller));
+                         or_any(caller.contacts, caller), where_accelerated(a.accelerations, caller),
+                         where_accelerated(caller.accelerations, caller));
 }
 
 template <class Arrays>
@@ -84,7 +91,7 @@ const Kernel& judge_whole_step(const Kernel& kernel, const Arrays& a) {
 template <class Arrays>
 const Kernel& start_small_steps(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.moved, a.motion,
-                         a.total_correction, caller.velocities);
+                         a.total_correction, caller.velocities, where_accelerated(a.accelerations, caller));
 }
 
 template <class Arrays>
@@ -171,7 +178,7 @@ const Kernel& gather_displacements(const Kernel& kernel, const Arrays& a, const 
                                    cl_int sub_step, cl_uint slot) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.corner_offsets, a.corners,
                          a.gradients, pressure, a.moved, a.motion, a.total_correction, a.vertex_order,
-                         or_any(caller.contacts, caller), sub_step, slot);
+                         or_any(caller.contacts, caller), sub_step, slot, where_accelerated(a.accelerations, caller));
 }
 
 /// `pressure`: of the last sub-step.
@@ -196,7 +203,8 @@ const Kernel& update_velocities(const Kernel& kernel, const Arrays& a, const Buf
 template <class Arrays>
 const Kernel& store_step(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.moved, a.motion,
-                         caller.positions, caller.velocities, or_any(caller.contacts, caller));
+                         caller.positions, caller.velocities, or_any(caller.contacts, caller),
+                         where_accelerated(a.accelerations, caller));
 }
 
 /// `pressure_stride`: from one kept pressure to the next, triangles.

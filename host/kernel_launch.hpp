@@ -50,6 +50,11 @@ public:
         set(&view.buffer, sizeof view.buffer);
         set_number(cl_ulong{view.offset / sizeof(float)});
     }
+    /// What only some builds of a kernel have an argument for: null in the others.
+    template <class Value>
+    void add(const Value* optional) {
+        if (optional) add(*optional);
+    }
 
 private:
     template <class Value>

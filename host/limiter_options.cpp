@@ -140,6 +140,7 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
            define("APSLK_INVERSE_MASS_STRIDE", options.inverse_mass_stride) +
            define("APSLK_POSITIONS_ONLY", options.positions_only ? 1 : 0) +
            define("APSLK_INTEGRATES", options.integrates ? 1 : 0) +
+           define("APSLK_ACCELERATION_PER_VERTEX", options.acceleration_per_vertex ? 1 : 0) +
            define("APSLK_KEEPS_CONTACTS", options.keeps_contacts ? 1 : 0) +
            define("APSLK_BENDS", options.bends ? 1 : 0) +
            define("APSLK_MATRIX", static_cast<std::uint32_t>(options.matrix)) +

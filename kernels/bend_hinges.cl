@@ -18,9 +18,10 @@ APSLK_INLINE bool bends_in(apslk_parameters parameters, apslk_solve_state state,
 
 // Where a vertex was at the start of the part, and a little ahead by the velocity that it had there. `moved` and
 // `motion` are those after acceleration, damping and the move.
-APSLK_INLINE float3 ahead_of_start(float4 moved, float4 motion, float time_step, float duration, apslk_free_part free) {
+APSLK_INLINE float3 ahead_of_start(float4 moved, float4 motion, float time_step, float duration, apslk_free_part free,
+                                   uint place) {
     const float3 velocity = motion.xyz / time_step;
-    const float3 before = motion.w > 0.0f ? velocity / free.kept - free.gain : velocity;
+    const float3 before = motion.w > 0.0f ? velocity / free.kept - gain_of_free_part(free, place) : velocity;
     return moved.xyz + duration * (APSLK_BENDING_LEAD * before - velocity);
 }
 
@@ -30,12 +31,13 @@ APSLK_KERNEL void bend_hinges(__global const apslk_parameters* parameters, __glo
                               __global const uint4* hinges, __global const uint* hinge_corner_offsets,
                               __global const float4* moved, __global const float4* motion,
                               __global apslk_hinge_gradients* gradients, __global float* moments,
-                              __global const float* rest_hinges, ulong rest_hinge_offset, int part) {
+                              __global const float* rest_hinges, ulong rest_hinge_offset,
+                              int part APSLK_ACCELERATIONS_ARGUMENT) {
     const uint c = (uint)get_group_id(1);
     const uint first_hinge = hinge_offsets[c];
     const apslk_range range = share_of(hinge_offsets[c + 1] - first_hinge, bends_in(parameters[c], states[c], part, 0));
     const float time_step = parameters[c].time_step, duration = time_step / (float)max(parameters[c].small_steps, 1);
-    const apslk_free_part free = free_part(parameters + c);
+    const apslk_free_part free = free_part(parameters + c, APSLK_ACCELERATIONS);
     const float reach = bending_step(parameters[c].bending_iterations, 0).reach;
     for (uint h = range.first; h < range.end; h += APSLK_WORK_GROUP_SIZE) {
         const uint r = first_hinge + h;
@@ -46,7 +48,7 @@ APSLK_KERNEL void bend_hinges(__global const apslk_parameters* parameters, __glo
         for (uint n = 0; n < 4; ++n) {
             const uint i = vertices[n];
             const float4 step = motion[i];
-            x[n] = ahead_of_start(moved[i], step, time_step, duration, free);
+            x[n] = ahead_of_start(moved[i], step, time_step, duration, free, i);
             weights[n] = step.w * (float)(hinge_corner_offsets[i + 1] - hinge_corner_offsets[i]);
         }
         const apslk_hinge_geometry hinge = hinge_geometry(x[0], x[1], x[2], x[3]);

@@ -36,7 +36,7 @@ APSLK_KERNEL void filter_in_one_group(
     bool started = false;
 
     const apslk_vertex_sums vertex_sums =
-        predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, free_step(parameters + c),
+        predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, free_step(parameters + c, 0),
                          small_step_count(parameters[c]) > 0, vertex_order, moved, motion, positions + position_offset,
                          velocities + velocity_offset, inverse_masses + inverse_mass_offset, 0);
     const float bad_vertices = group_sum(vertex_sums.bad, scratch);
@@ -92,7 +92,7 @@ APSLK_KERNEL void filter_in_one_group(
         started = true;
         // Not under a condition: where a loop follows a conditional barrier, pocl 3.1 lets the first work-item decide
         // for all whether to enter it.
-        begin_small_steps(cloths[c], starting, parameters[c].time_step, free_part(parameters + c),
+        begin_small_steps(cloths[c], starting, parameters[c].time_step, free_part(parameters + c, 0),
                           small_step_count(parameters[c]), vertex_order, moved, motion, total_correction,
                           velocities + velocity_offset);
         if (going_on && !starting) {
@@ -115,7 +115,7 @@ APSLK_KERNEL void filter_in_one_group(
                                                  states[c].greatest_mass,
                                                  raises_masses ? APSLK_HELD_TENSION : INFINITY};
             if (in_small_steps)  // uniform
-                advance_vertices(cloths[c], true, small_step, free_part(parameters + c), corner_offsets, corners,
+                advance_vertices(cloths[c], true, small_step, free_part(parameters + c, 0), corner_offsets, corners,
                                  gradients, pressure, moved, motion, total_correction, nothing_touched);
             else
                 displace_vertices(cloths[c], solved, corner_offsets, corners, gradients, pressure, moved);

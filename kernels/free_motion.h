@@ -9,36 +9,55 @@
 #ifndef APSLK_INTEGRATES
 #define APSLK_INTEGRATES 0
 #endif
+#ifndef APSLK_ACCELERATION_PER_VERTEX
+#define APSLK_ACCELERATION_PER_VERTEX 0
+#endif
 
-// Of one small step: u ← kept (u + gain).
+// The last argument of kernels that accelerate vertices, which they have only where each has an acceleration of its
+// own: m/s², in the limiter's order of vertices; their w is zero.
+#if APSLK_ACCELERATION_PER_VERTEX
+#define APSLK_ACCELERATIONS_ARGUMENT , __global const float4* accelerations
+#define APSLK_ACCELERATIONS accelerations
+#else
+#define APSLK_ACCELERATIONS_ARGUMENT
+#define APSLK_ACCELERATIONS 0
+#endif
+
+// Of one small step: u ← kept (u + gain), to which a vertex adds duration times its own acceleration.
 typedef struct {
-    float3 gain;  // m/s
+    float3 gain;     // m/s
+    float duration;  // s
     float kept;
+    __global const float4* accelerations;
 } apslk_free_part;
 
 // Of all small steps of a time step, with nothing else to move the cloth: ends at kept ṽ + gain, and moves by Δt times
-// mean_kept ṽ + mean_gain.
+// mean_kept ṽ + mean_gain. A vertex' own acceleration counts for `seconds` and `mean_seconds`.
 typedef struct {
-    float3 gain, mean_gain;  // m/s
+    float3 gain, mean_gain;       // m/s
+    float seconds, mean_seconds;  // s
     float kept, mean_kept;
+    __global const float4* accelerations;
 } apslk_free_step;
 
-APSLK_INLINE apslk_free_part free_part(__global const apslk_parameters* parameters) {
-    apslk_free_part part = {(float3)(0.0f), 1.0f};
+APSLK_INLINE apslk_free_part free_part(__global const apslk_parameters* parameters,
+                                       __global const float4* accelerations) {
+    apslk_free_part part = {(float3)(0.0f), 0.0f, 1.0f, accelerations};
 #if APSLK_INTEGRATES
-    const float duration = parameters->time_step / (float)max(parameters->small_steps, 1);
-    part.gain = duration * vload3(0, parameters->acceleration);
-    part.kept = exp(-parameters->damping * duration);
+    part.duration = parameters->time_step / (float)max(parameters->small_steps, 1);
+    part.gain = part.duration * vload3(0, parameters->acceleration);
+    part.kept = exp(-parameters->damping * part.duration);
 #else
     (void)parameters;
 #endif
     return part;
 }
 
-APSLK_INLINE apslk_free_step free_step(__global const apslk_parameters* parameters) {
-    apslk_free_step step = {(float3)(0.0f), (float3)(0.0f), 1.0f, 1.0f};
+APSLK_INLINE apslk_free_step free_step(__global const apslk_parameters* parameters,
+                                       __global const float4* accelerations) {
+    apslk_free_step step = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f, 1.0f, 1.0f, accelerations};
 #if APSLK_INTEGRATES
-    const apslk_free_part part = free_part(parameters);
+    const apslk_free_part part = free_part(parameters, accelerations);
     const int parts = max(parameters->small_steps, 1);
     float kept = 1.0f, gains = 0.0f, mean_kept = 0.0f, mean_gains = 0.0f;
     for (int k = 0; k < parts; ++k) {
@@ -49,6 +68,8 @@ APSLK_INLINE apslk_free_step free_step(__global const apslk_parameters* paramete
     }
     step.gain = gains * part.gain;
     step.mean_gain = mean_gains / (float)parts * part.gain;
+    step.seconds = gains * part.duration;
+    step.mean_seconds = mean_gains / (float)parts * part.duration;
     step.kept = kept;
     step.mean_kept = mean_kept / (float)parts;
 #else
@@ -57,16 +78,34 @@ APSLK_INLINE apslk_free_step free_step(__global const apslk_parameters* paramete
     return step;
 }
 
-APSLK_INLINE float3 after_free_part(apslk_free_part part, float3 velocity, float inverse_mass) {
-    return APSLK_INTEGRATES && inverse_mass > 0.0f ? part.kept * (velocity + part.gain) : velocity;
+// What vertex `place` gains beside `gain`, its own acceleration counting for `seconds`.
+APSLK_INLINE float3 with_own_gain(float3 gain, float seconds, __global const float4* accelerations, uint place) {
+#if APSLK_ACCELERATION_PER_VERTEX
+    return gain + seconds * accelerations[place].xyz;
+#else
+    (void)seconds;
+    (void)accelerations;
+    (void)place;
+    return gain;
+#endif
 }
 
-APSLK_INLINE float3 after_free_step(apslk_free_step step, float3 velocity, float inverse_mass) {
-    return APSLK_INTEGRATES && inverse_mass > 0.0f ? step.kept * velocity + step.gain : velocity;
+APSLK_INLINE float3 gain_of_free_part(apslk_free_part part, uint place) {
+    return with_own_gain(part.gain, part.duration, part.accelerations, place);
 }
 
-APSLK_INLINE float3 mean_of_free_step(apslk_free_step step, float3 velocity, float inverse_mass) {
-    return APSLK_INTEGRATES && inverse_mass > 0.0f ? step.mean_kept * velocity + step.mean_gain : velocity;
+APSLK_INLINE float3 after_free_part(apslk_free_part part, uint place, float3 velocity, float inverse_mass) {
+    return APSLK_INTEGRATES && inverse_mass > 0.0f ? part.kept * (velocity + gain_of_free_part(part, place)) : velocity;
+}
+
+APSLK_INLINE float3 after_free_step(apslk_free_step step, uint place, float3 velocity, float inverse_mass) {
+    const float3 gain = with_own_gain(step.gain, step.seconds, step.accelerations, place);
+    return APSLK_INTEGRATES && inverse_mass > 0.0f ? step.kept * velocity + gain : velocity;
+}
+
+APSLK_INLINE float3 mean_of_free_step(apslk_free_step step, uint place, float3 velocity, float inverse_mass) {
+    const float3 gain = with_own_gain(step.mean_gain, step.mean_seconds, step.accelerations, place);
+    return APSLK_INTEGRATES && inverse_mass > 0.0f ? step.mean_kept * velocity + gain : velocity;
 }
 
 #endif

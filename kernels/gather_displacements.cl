@@ -2,7 +2,7 @@
 // Eq. (6) with λ = p Δt²: x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, on to the next of small steps, and how the solve ended.
 // Reference: apsl::reference, displacements, effective_masses and strain_limiter. Moves 12 B corners, 2 B offsets, 24 B
 // gradients, 4 B pressure, 16 B position read and written, a triangle; in small steps 32 B and the 4 B of `stiffening`
-// more, with contacts 36 B more a vertex.
+// more, with contacts 36 B more a vertex, with accelerations 16 B.
 #include "layout.h"
 #include "regularization.h"
 #include "vertex_motion.h"
@@ -19,7 +19,8 @@ APSLK_KERNEL void gather_displacements(__global const apslk_cloth* cloths, __glo
                                        __global const uint* corners, __global const apslk_gradients* gradients,
                                        __global const float* pressure, __global float4* moved, __global float4* motion,
                                        __global float4* total_correction, __global const uint* vertex_order,
-                                       __global const float* contacts, ulong contact_offset, int sub_step, uint slot) {
+                                       __global const float* contacts, ulong contact_offset, int sub_step,
+                                       uint slot APSLK_ACCELERATIONS_ARGUMENT) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const float initial = states[c].initial_squared_residual;
@@ -30,8 +31,10 @@ APSLK_KERNEL void gather_displacements(__global const apslk_cloth* cloths, __glo
     displace_vertices(cloths[c], !in_small_steps && !states[c].stopped && solved, corner_offsets, corners, gradients,
                       pressure, moved);
     const bool raises_masses = parameters[c].raises_masses != 0;
-    apslk_free_part free = free_part(parameters + c);
+    apslk_free_part free = free_part(parameters + c, APSLK_ACCELERATIONS);
+    // Of Δt times a velocity.
     free.gain *= parameters[c].time_step;
+    free.duration *= parameters[c].time_step;
     const apslk_small_step small_step = {sub_step,
                                          small_step_count(parameters[c]),
                                          solved,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Algorithm 1, line 1: x ← x̃ + Δt ṽ, outside of contacts. Also begins the call: clears each cloth's state and
 // statistics. Reference: apsl::reference, strain_limiter. Moves 32 B read, 16 B written a vertex (strides of 3), before
-// small steps 16 B more written, with contacts 32 B more read.
+// small steps 16 B more written, with contacts 32 B more read, with accelerations 12 B more read and 16 B written.
 #include "layout.h"
 #include "vertex_motion.h"
 #include "work_group.h"
@@ -12,13 +12,24 @@ APSLK_KERNEL void predict_positions(__global const apslk_cloth* cloths, __global
                                     __global float4* motion, __global const float* positions, ulong position_offset,
                                     __global const float* velocities, ulong velocity_offset,
                                     __global const float* inverse_masses, ulong inverse_mass_offset,
-                                    __global const float* contacts, ulong contact_offset) {
+                                    __global const float* contacts, ulong contact_offset
+#if APSLK_ACCELERATION_PER_VERTEX
+                                    ,
+                                    __global float4* accelerations, __global const float* caller_accelerations,
+                                    ulong acceleration_offset
+#endif
+) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
-    const apslk_vertex_sums sums =
-        predict_vertices(cloths[c], parameters[c].enabled, parameters[c].time_step, free_step(parameters + c),
-                         small_step_count(parameters[c]) > 0, vertex_order, moved, motion, positions + position_offset,
-                         velocities + velocity_offset, inverse_masses + inverse_mass_offset, contacts + contact_offset);
+#if APSLK_ACCELERATION_PER_VERTEX
+    // A work-item reads below what it has written here.
+    order_accelerations(cloths[c], parameters[c].enabled, vertex_order, accelerations,
+                        caller_accelerations + acceleration_offset);
+#endif
+    const apslk_vertex_sums sums = predict_vertices(
+        cloths[c], parameters[c].enabled, parameters[c].time_step, free_step(parameters + c, APSLK_ACCELERATIONS),
+        small_step_count(parameters[c]) > 0, vertex_order, moved, motion, positions + position_offset,
+        velocities + velocity_offset, inverse_masses + inverse_mass_offset, contacts + contact_offset);
     store_partial(partials, APSLK_PARTIAL_BAD_VERTICES, group_sum(sums.bad, scratch));
     store_partial(partials, APSLK_PARTIAL_LOG_MASSES, group_sum(sums.log_masses, scratch));
     store_partial(partials, APSLK_PARTIAL_MOVABLE, group_sum(sums.movable, scratch));

@@ -58,14 +58,25 @@ APSLK_INLINE float3 load_velocity(__global const float* velocities, uint vertex)
     return load_vector(velocities + (ulong)vertex * APSLK_VELOCITY_STRIDE, APSLK_VELOCITY_COMPONENT_STRIDE);
 }
 
+// Into the limiter's order of vertices, for what `free` then gives them.
+APSLK_INLINE void order_accelerations(apslk_cloth cloth, bool active, __global const uint* vertex_order,
+                                      __global float4* ordered, __global const float* accelerations) {
+    const apslk_range range = share_of(cloth.vertex_count, active);
+    for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
+        const uint place = cloth.vertex_begin + v;
+        ordered[place] = (float4)(load_position(accelerations, vertex_order[place]), 0.0f);
+    }
+}
+
 // x̃ + Δt ṽ of the caller's vertex, ṽ as `free` has it, outside of what it touches, and Δt times the velocity at the
 // end. Where there are no velocities, `velocities` is the positions, in and out, and this the position as given, to the
 // bit: one pointer in place of two, which the large kernel has no registers for.
 APSLK_INLINE apslk_moving_vertex end_of_step(__global const float* positions, __global const float* velocities,
-                                             uint vertex, float inverse_mass, float time_step, apslk_free_step free,
-                                             __global const float* contacts) {
+                                             uint place, uint vertex, float inverse_mass, float time_step,
+                                             apslk_free_step free, __global const float* contacts) {
 #if APSLK_POSITIONS_ONLY
     (void)positions;
+    (void)place;
     (void)time_step;
     (void)inverse_mass;
     (void)free;
@@ -74,8 +85,9 @@ APSLK_INLINE apslk_moving_vertex end_of_step(__global const float* positions, __
     return end;
 #else
     const float3 start = load_position(positions, vertex), velocity = load_velocity(velocities, vertex);
-    const float3 x = predicted_position(start, mean_of_free_step(free, velocity, inverse_mass), time_step);
-    const apslk_moving_vertex end = {x, time_step * after_free_step(free, velocity, inverse_mass), x - start, false};
+    const float3 x = predicted_position(start, mean_of_free_step(free, place, velocity, inverse_mass), time_step);
+    const apslk_moving_vertex end = {x, time_step * after_free_step(free, place, velocity, inverse_mass), x - start,
+                                     false};
     return inverse_mass > 0.0f ? kept_outside(end, contacts, vertex, end_of_the_step(time_step)) : end;
 #endif
 }
@@ -104,7 +116,8 @@ APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, 
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, i = vertex_order[place];
         const float w = inverse_masses[(ulong)i * APSLK_INVERSE_MASS_STRIDE];
-        const float4 x = (float4)(end_of_step(positions, velocities, i, w, time_step, free, contacts).position, w);
+        const float4 x =
+            (float4)(end_of_step(positions, velocities, place, i, w, time_step, free, contacts).position, w);
         moved[place] = x;
         if (in_small_steps) motion[place] = (float4)(load_position(positions, i), w);
         sums.bad += is_bad_vertex(x) ? 1.0f : 0.0f;
@@ -127,7 +140,7 @@ APSLK_INLINE void begin_small_steps(apslk_cloth cloth, bool active, float time_s
         const uint place = cloth.vertex_begin + v;
         const float3 velocity = load_velocity(velocities, vertex_order[place]);
         const float4 start = motion[place];
-        const float3 step = time_step * after_free_part(free, velocity, start.w);
+        const float3 step = time_step * after_free_part(free, place, velocity, start.w);
         moved[place] = (float4)(fma((float3)(part), step, start.xyz), start.w);
         motion[place] = (float4)(step, start.w);
         total_correction[place] = (float4)(0.0f);
@@ -249,7 +262,7 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
                 if (small_step.sub_step < small_step.small_steps) step = kept * (step + parts * change);
             }
             keep_in_small_step(&x, &step, &total, touched, i, small_step);
-            if (onward > 0.0f) step = (float4)(after_free_part(free, step.xyz, given), 0.0f);
+            if (onward > 0.0f) step = (float4)(after_free_part(free, i, step.xyz, given), 0.0f);
             motion[i] = (float4)(step.xyz, given);
 #else
                 step += parts * change;
@@ -326,9 +339,10 @@ APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited
         const float4 end = moved[place], step = motion[place];
         const float3 before = load_velocity(velocities, i);
         const bool moves = limited && step.w > 0.0f;
-        const apslk_moving_vertex unlimited = end_of_step(positions, velocities, i, step.w, time_step, free, contacts);
+        const apslk_moving_vertex unlimited =
+            end_of_step(positions, velocities, place, i, step.w, time_step, free, contacts);
         const float3 free_after =
-            unlimited.touches ? unlimited.motion * (1.0f / time_step) : after_free_step(free, before, step.w);
+            unlimited.touches ? unlimited.motion * (1.0f / time_step) : after_free_step(free, place, before, step.w);
         const float3 after = moves ? step.xyz * (1.0f / time_step) : free_after;
         const float3 x = moves ? end.xyz : unlimited.position;
         if (!all(isfinite(after)) || !all(isfinite(x))) continue;

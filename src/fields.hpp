@@ -143,6 +143,9 @@ inline constexpr std::tuple option_fields{
           "Hinges resist bending, and their rest state is given with every call. It requires integrates and "
           "limits_stretch.",
           false},
+    Field{"acceleration_per_vertex", &Options::acceleration_per_vertex, Bounds{}, "",
+          "Each vertex has an acceleration beside the one of all, given with every call. It requires integrates.",
+          false},
 };
 
 /// Of the caller's buffers.

@@ -101,6 +101,8 @@ void validate(const Options& options) {
     if (options.stretch_ceiling_per_triangle && !options.limits_stretch)
         invalid("stretch_ceiling_per_triangle is on, which needs limits_stretch");
     if (options.bends && !options.integrates) invalid("bends is on, which needs integrates");
+    if (options.acceleration_per_vertex && !options.integrates)
+        invalid("acceleration_per_vertex is on, which needs integrates");
     if (options.bends && !options.limits_stretch)
         invalid("bends is on, which needs limits_stretch: areas and bending alone let a cloth flow in its plane");
     if (options.limits_stretch) {

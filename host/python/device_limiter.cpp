@@ -78,7 +78,8 @@ Address DeviceLimiter::enqueue(Address queue, const std::map<std::string, Place>
                           .rest_shapes = view("rest_shapes"),
                           .stretch_ceilings = view("stretch_ceiling"),
                           .contacts = view("contacts"),
-                          .rest_hinges = view("rest_hinges")};
+                          .rest_hinges = view("rest_hinges"),
+                          .accelerations = view("accelerations")};
     const py::gil_scoped_release others_may_run;
     const std::lock_guard one_call_at_a_time(mutex_);
     return reinterpret_cast<Address>(

@@ -55,6 +55,7 @@ Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle devic
     if (options.bends) rest_hinges_ = make_buffer(std::max<std::size_t>(2 * hinge_count_, 1));
     if (options.stretch_ceiling_per_triangle) stretch_ceilings_ = make_buffer(triangle_count_);
     if (options.keeps_contacts) contacts_ = make_buffer(APSLK_CONTACT_SIZE * vertex_count_);
+    if (options.acceleration_per_vertex) accelerations_ = make_buffer(3 * vertex_count_);
 }
 
 host::BufferHandle Limiter::make_buffer(std::size_t floats) {
@@ -94,6 +95,7 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
     const auto given_shapes = taken(rest_shapes_, "rest_shapes", triangle_count_, 4);
     const auto given_ceilings = taken(stretch_ceilings_, "stretch_ceiling", triangle_count_, 1);
     const auto given_contacts = taken(contacts_, "contacts", vertex_count_, APSLK_CONTACT_SIZE);
+    const auto given_accelerations = taken(accelerations_, "accelerations", vertex_count_, 3);
     const auto given_hinges = taken(rest_hinges_, "rest_hinges", hinge_count_, 2);
     for_each_field(parameter_fields, [&](const auto& field) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>) {
@@ -120,6 +122,7 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
         if (given_hinges && hinge_count_ > 0) upload(rest_hinges_, given_hinges->data(), 2 * hinge_count_);
         if (given_ceilings) upload(stretch_ceilings_, given_ceilings->data(), triangle_count_);
         if (given_contacts) upload(contacts_, given_contacts->data(), APSLK_CONTACT_SIZE * vertex_count_);
+        if (given_accelerations) upload(accelerations_, given_accelerations->data(), 3 * vertex_count_);
         const Buffers buffers{.positions = {positions_.get()},
                               .velocities = {velocities_.get()},
                               .inverse_masses = {inverse_masses_.get()},
@@ -128,7 +131,8 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
                               .rest_shapes = {rest_shapes_.get()},
                               .stretch_ceilings = {stretch_ceilings_.get()},
                               .contacts = {contacts_.get()},
-                              .rest_hinges = {rest_hinges_.get()}};
+                              .rest_hinges = {rest_hinges_.get()},
+                              .accelerations = {accelerations_.get()}};
         const host::EventHandle filtered(limiter_->enqueue(queue_.get(), buffers, parameters));
         const host::EventHandle read(limiter_->read_stats(queue_.get(), {&stats, 1}));
         const cl_event read_event = read.get();

@@ -45,6 +45,7 @@ private:
     host::BufferHandle regularization_;    // where Options::regularization_per_triangle
     host::BufferHandle rest_shapes_;       // where Options::limits_stretch
     host::BufferHandle rest_hinges_;       // where Options::bends
+    host::BufferHandle accelerations_;     // where Options::acceleration_per_vertex
     host::BufferHandle stretch_ceilings_;  // where Options::stretch_ceiling_per_triangle
     host::BufferHandle contacts_;          // where Options::keeps_contacts
 };

@@ -114,7 +114,8 @@ typedef struct apsl_options {
     int32_t integrates;                   /**< not 0: a call is a whole time step, positions in and out */
     int32_t keeps_contacts;               /**< not 0: a contacts buffer is given with every call */
     int32_t bends;                        /**< not 0: hinges resist bending; rest hinges are given with every call */
-    uint32_t reserved[6];                 /**< zeros; room for fields to come, so that the size stays */
+    int32_t acceleration_per_vertex;      /**< not 0: an accelerations buffer is given with every call */
+    uint32_t reserved[5];                 /**< zeros; room for fields to come, so that the size stays */
 } apsl_options;
 
 /** apsl::Parameters: what may change from call to call. Begin with apsl_default_parameters(). */
@@ -158,8 +159,10 @@ typedef struct apsl_buffers {
     apsl_buffer_view contacts;         /**< 8 floats a vertex, [V]: outward unit normal n (zeros: none), offset d, m
                                           (kept at n.x >= d), velocity of the body there, m/s, friction coefficient;
                                           only with keeps_contacts */
-    apsl_buffer_view rest_hinges; /**< 2 floats a hinge, [H]: its angle at rest, rad, and l2/(A0 + A1); an edge of two
-                                     triangles is a hinge, in ascending order of its vertices. Only with bends */
+    apsl_buffer_view rest_hinges;   /**< 2 floats a hinge, [H]: its angle at rest, rad, and l2/(A0 + A1); an edge of two
+                                       triangles is a hinge, in ascending order of its vertices. Only with bends */
+    apsl_buffer_view accelerations; /**< m/s2, [V] laid out as positions are: beside the acceleration of all; only with
+                                       acceleration_per_vertex */
 } apsl_buffers;
 
 /** apsl::Stats: what a call did to one cloth. */

@@ -94,6 +94,9 @@ struct Options {
     /// Hinges resist bending, by Parameters::bending (docs/formulation.md, Bending): Buffers::rest_hinges is given with
     /// every call. Needs integrates, and limits_stretch: without something to hold it in its plane a cloth flows.
     bool bends = false;
+    /// Each vertex has an acceleration of its own beside Parameters::acceleration, as of wind (docs/formulation.md, A
+    /// whole step): Buffers::accelerations is given with every call. Needs integrates.
+    bool acceleration_per_vertex = false;
 
     bool operator==(const Options&) const = default;  ///< field by field
 };

@@ -52,7 +52,8 @@ struct Parameters {
     /// With Options::limits_stretch: no principal stretch of a triangle above this multiple of its rest shape, ≥ 1.01.
     /// 0: areas alone. With areas held, edges end between 1/this and this. Ignored where each triangle has its own.
     float stretch_ceiling = 0.0f;
-    /// m/s², with Options::integrates: what vertices that are not pinned gain in each small step. Gravity.
+    /// m/s², with Options::integrates: what vertices that are not pinned gain in each small step. Gravity. What differs
+    /// from vertex to vertex is Buffers::accelerations.
     std::array<float, 3> acceleration{};
     /// 1/s ≥ 0, with Options::integrates: velocities fall by exp(−damping · t).
     float damping = 0.0f;

@@ -56,6 +56,9 @@ struct Buffers {
     /// and A₀, A₁ the areas of its triangles at rest; a second number of 0 leaves a hinge free, a smaller one makes it
     /// softer. Hinges in the order of Topology::hinges. Only with Options::bends; see enqueue_rest_hinges.
     BufferView rest_hinges = {};
+    /// m/s², [V], laid out as Options say of positions: what a vertex that is not pinned is accelerated by, beside
+    /// Parameters::acceleration. Of a force f, N, on vertex i: f wᵢ. Only with Options::acceleration_per_vertex.
+    BufferView accelerations = {};
 };
 
 APSL_STRUCTS_END

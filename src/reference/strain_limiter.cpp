@@ -60,6 +60,9 @@ void check(const Topology& topology, const Buffers<Real>& buffers, const Options
     check_size("contacts", buffers.contacts.size(),
                options.keeps_contacts ? APSLK_CONTACT_SIZE * topology.vertex_count() : 0);
     check_values("contacts", "number", buffers.contacts, "a finite number", [](Real) { return true; });
+    check_size("accelerations", buffers.accelerations.size(),
+               options.acceleration_per_vertex ? 3 * topology.vertex_count() : 0);
+    check_values("accelerations", "number", buffers.accelerations, "a finite number (m/s2)", [](Real) { return true; });
 }
 
 template <class Real>
@@ -115,7 +118,7 @@ struct BasicStrainLimiter<Real>::Implementation {
 
     void predict(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
         const auto time_step = static_cast<Real>(parameters.time_step);
-        const FreeStep<Real> free(parameters);
+        const FreeStep<Real> free(parameters, buffers.accelerations);
         predicted.resize(buffers.positions.size());
         for (std::size_t n = 0; n < predicted.size(); ++n)
             predicted[n] =
@@ -180,18 +183,18 @@ struct BasicStrainLimiter<Real>::Implementation {
         if (options.limits_stretch) stretches.hold_excess(moved);
         motion.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) motion[n] = time_step * buffers.velocities[n];
-        begin_part(buffers.inverse_masses, parameters);
+        begin_part(buffers, parameters);
         return standing(buffers);
     }
 
     /// The forces of a small step change the velocities, which move x_j on by it.
-    void begin_part(std::span<const Real> inverse_masses, const ResolvedParameters& parameters) {
+    void begin_part(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
         const auto time_step = static_cast<Real>(parameters.time_step),
                    parts = static_cast<Real>(parameters.small_steps);
-        const FreePart<Real> free(parameters);
+        const FreePart<Real> free(parameters, buffers.accelerations);
         if (options.bends) bending.find_velocity_changes(moved, motion, parameters);
         for (std::size_t n = 0; n < moved.size(); ++n) {
-            if (options.integrates) motion[n] = time_step * free(motion[n] / time_step, n, inverse_masses);
+            if (options.integrates) motion[n] = time_step * free(motion[n] / time_step, n, buffers.inverse_masses);
             if (options.bends) motion[n] += time_step * bending.velocity_changes()[n];
             moved[n] += motion[n] / parts;
         }
@@ -339,12 +342,11 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// Corrects x_j. In small steps of `parts` parts a displacement of sub-step k changes the velocity too, by parts ·
     /// Δx / Δt, and carries on through the parts left.
     void displace(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
-        const std::span<const Real> inverse_masses = buffers.inverse_masses;
         const int sub_step = stats.sub_steps, parts = parameters.small_steps;
         if (options.limits_stretch)
             stretches.displacements(parameters.raises_masses, correction);
         else
-            find_correction(inverse_masses, parameters);
+            find_correction(buffers.inverse_masses, parameters);
         const auto carried = static_cast<Real>(std::max(parts - sub_step, 1));
         for (std::size_t n = 0; n < moved.size(); ++n) {
             moved[n] += correction[n];
@@ -357,7 +359,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             if (options.limits_stretch) keep_velocities((carried - Real(1)) / count);
         }
         if (options.keeps_contacts) keep_contacts(buffers, parameters);
-        if (sub_step + 1 < parts) begin_part(inverse_masses, parameters);
+        if (sub_step + 1 < parts) begin_part(buffers, parameters);
     }
 
     /// Where a whole step ends and with what velocities, `limited` or by acceleration and damping alone; false, and

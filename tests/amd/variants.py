@@ -23,7 +23,9 @@ AXES = [
       "APSLK_BENDS": bends}
      for alpha, chebyshev, stretch, bends in [(0, 0, 0, 0), (1, 0, 0, 0), (0, 1, 0, 0), (0, 1, 1, 0), (0, 1, 1, 1)]],
     [{"APSLK_STRETCH_CEILING_PER_TRIANGLE": 0}, {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}],
-    [{"APSLK_INTEGRATES": 0}, {"APSLK_INTEGRATES": 1}],
+    # An acceleration for each vertex is of whole steps.
+    [{"APSLK_INTEGRATES": 0, "APSLK_ACCELERATION_PER_VERTEX": 0}, {"APSLK_INTEGRATES": 1, "APSLK_ACCELERATION_PER_VERTEX": 0},
+     {"APSLK_INTEGRATES": 1, "APSLK_ACCELERATION_PER_VERTEX": 1}],
     [{"APSLK_KEEPS_CONTACTS": 0}, {"APSLK_KEEPS_CONTACTS": 1}],
     [{"APSLK_WARM_START_SUB_STEPS": 0}, {"APSLK_WARM_START_SUB_STEPS": 8}],
     # What the patches of 512 triangles of most meshes have; host/ passes the number of the meshes at hand.
@@ -33,6 +35,9 @@ AXES = [
 # What contacts add reads no layout of the caller's arrays: one is enough.
 _CONTACTS_APART = ({"APSLK_KEEPS_CONTACTS": 1, "APSLK_POSITION_STRIDE": 1},
                    {"APSLK_KEEPS_CONTACTS": 1, "APSLK_POSITION_STRIDE": 4})
+# The same of accelerations, which predict_positions alone reads as the caller has them.
+_ACCELERATIONS_APART = ({"APSLK_ACCELERATION_PER_VERTEX": 1, "APSLK_POSITION_STRIDE": 1},
+                        {"APSLK_ACCELERATION_PER_VERTEX": 1, "APSLK_POSITION_STRIDE": 4})
 
 # Combinations that host/ never builds for a GPU (host/limiter_options.cpp), or that make no other code.
 NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"APSLK_REGULARIZATION_PER_TRIANGLE": 1},
@@ -40,26 +45,30 @@ NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"
                                            {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}, {"APSLK_INTEGRATES": 1},
                                            {"APSLK_KEEPS_CONTACTS": 1}),
                 "store_step.cl": ({"APSLK_INTEGRATES": 0}, {"APSLK_POSITIONS_ONLY": 1}, {"APSLK_LIMITS_STRETCH": 1},
-                                  *_CONTACTS_APART),
+                                  *_CONTACTS_APART, *_ACCELERATIONS_APART),
                 **{file: ({"APSLK_LIMITS_STRETCH": 1},) for file in ("matrix_free_consistent.cl", "finish_solve.cl")},
                 "predict_positions.cl": ({"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
                                          *_CONTACTS_APART),
                 "start_small_steps.cl": ({"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
-                                         {"APSLK_KEEPS_CONTACTS": 1}),
+                                         {"APSLK_KEEPS_CONTACTS": 1}, *_ACCELERATIONS_APART),
                 "update_velocities.cl": ({"APSLK_LIMITS_STRETCH": 1}, {"APSLK_INTEGRATES": 1}, *_CONTACTS_APART),
-                "gather_displacements.cl": (*_CONTACTS_APART,
+                "gather_displacements.cl": (*_CONTACTS_APART, *_ACCELERATIONS_APART,
+                                            {"APSLK_ACCELERATION_PER_VERTEX": 1, "APSLK_WARM_START_SUB_STEPS": 8},
+                                            {"APSLK_ACCELERATION_PER_VERTEX": 1, "APSLK_REGULARIZATION_PER_TRIANGLE": 1},
                                             {"APSLK_KEEPS_CONTACTS": 1, "APSLK_WARM_START_SUB_STEPS": 8},
                                             {"APSLK_KEEPS_CONTACTS": 1, "APSLK_REGULARIZATION_PER_TRIANGLE": 1},
                                             {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
                                             {"APSLK_WARM_START_SUB_STEPS": 8, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 1, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 4, "APSLK_CHEBYSHEV": 1}),
-                "rest_areas.cl": ({"APSLK_KEEPS_CONTACTS": 1},),
+                "rest_areas.cl": ({"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_ACCELERATION_PER_VERTEX": 1}),
                 # Positions are read as rest_areas.cl reads them.
-                "rest_hinges.cl": ({"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_INTEGRATES": 0}, {"APSLK_LIMITS_STRETCH": 0},
+                "rest_hinges.cl": ({"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_ACCELERATION_PER_VERTEX": 1},
+                                   {"APSLK_INTEGRATES": 0}, {"APSLK_LIMITS_STRETCH": 0},
                                    {"APSLK_POSITION_STRIDE": 1}, {"APSLK_POSITION_STRIDE": 4}),
                 "bend_hinges.cl": ({"APSLK_INTEGRATES": 0},),
-                "solve_control.cl": ({"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_BENDS": 1, "APSLK_INTEGRATES": 0}),
+                "solve_control.cl": ({"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_ACCELERATION_PER_VERTEX": 1},
+                                     {"APSLK_BENDS": 1, "APSLK_INTEGRATES": 0}),
                 "order_triangle_values.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0}, {"APSLK_POSITIONS_ONLY": 1},
                                              {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1, "APSLK_LIMITS_STRETCH": 0}),
                 "measure_area_change.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0},

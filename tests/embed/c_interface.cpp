@@ -251,6 +251,7 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.stretch_ceiling_per_triangle == 0);
     CHECK(o.integrates == 0);
     CHECK(o.bends == 0);
+    CHECK(o.acceleration_per_vertex == 0);
     CHECK(o.keeps_contacts == 0);
     const apsl_parameters p = apsl_default_parameters();
     const Parameters parameters;
@@ -281,13 +282,15 @@ TEST_CASE("a whole step by the C interface leaves the bytes of the C++ one", "[e
     c_options.integrates = 1;
     c_options.keeps_contacts = 1;
     c_options.limits_stretch = 1;
+    c_options.acceleration_per_vertex = 1;
     apsl_parameters c_parameters = apsl_default_parameters();
     c_parameters.sub_steps = 4;
     c_parameters.most_sub_steps = 6;
     c_parameters.stretch_ceiling = 1.05f;
     c_parameters.acceleration[1] = -9.81f;
     c_parameters.damping = 0.5f;
-    const Options options{.limits_stretch = true, .integrates = true, .keeps_contacts = true};
+    const Options options{
+        .limits_stretch = true, .integrates = true, .keeps_contacts = true, .acceleration_per_vertex = true};
     const Parameters parameters{.sub_steps = 4,
                                 .most_sub_steps = 6,
                                 .stretch_ceiling = 1.05f,

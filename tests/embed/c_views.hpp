@@ -16,7 +16,8 @@ inline apsl_buffers c_views(const Buffers& v) {
             {v.rest_shapes.buffer, v.rest_shapes.offset},
             {v.stretch_ceilings.buffer, v.stretch_ceilings.offset},
             {v.contacts.buffer, v.contacts.offset},
-            {v.rest_hinges.buffer, v.rest_hinges.offset}};
+            {v.rest_hinges.buffer, v.rest_hinges.offset},
+            {v.accelerations.buffer, v.accelerations.offset}};
 }
 
 }  // namespace apsl::test

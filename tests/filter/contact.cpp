@@ -68,6 +68,17 @@ void find_contacts(MovingCloth& cloth, double friction) {
     }
 }
 
+// A step over the ball, with the status and the contact that it must keep. Leaves the cloth at its end.
+Ended step_over_ball(StrainLimiter& limiter, MovingCloth& cloth, const Options& options, const Parameters& parameters) {
+    find_contacts(cloth, 0.3);
+    const Ended end = step_on_device(limiter, cloth, options, parameters);
+    REQUIRE(end.stats.status == Status::ok);
+    CHECK(greatest_depth(cloth, end.positions) < 1e-6);
+    cloth.positions = end.positions;
+    cloth.velocities = end.velocities;
+    return end;
+}
+
 // Kinetic and of height, J.
 double energy_of(const MovingCloth& cloth, const Ended& end) {
     double energy = 0.0;
@@ -142,16 +153,11 @@ TEST_CASE("contact: a sheet falls on a ball, and areas, ceiling and contact hold
     double least_energy = std::numeric_limits<double>::infinity();
     double in_motion = 0.0, at_rest = 0.0, stretch = 0.0;  // greatest, of areas their change
     for (int frame = 0; frame < 90; ++frame) {
-        find_contacts(cloth, 0.3);
-        const Ended end = step_on_device(limiter, cloth, options, parameters);
         CAPTURE(frame);
-        REQUIRE(end.stats.status == Status::ok);
-        CHECK(greatest_depth(cloth, end.positions) < 1e-6);
+        const Ended end = step_over_ball(limiter, cloth, options, parameters);
         const double energy = energy_of(cloth, end);
         CHECK(energy < least_energy + 1e-4);
         least_energy = std::min(least_energy, energy);
-        cloth.positions = end.positions;
-        cloth.velocities = end.velocities;
         double& area_change = frame < 45 ? in_motion : at_rest;
         area_change = std::max(area_change, static_cast<double>(end.stats.max_area_change));
         stretch = std::max(stretch, static_cast<double>(end.stats.max_stretch));
@@ -162,6 +168,54 @@ TEST_CASE("contact: a sheet falls on a ball, and areas, ceiling and contact hold
     // It hangs on the ball: what was above its middle still is, and the hem is below it.
     CHECK(cloth.positions[3 * (16 * 33 + 16) + 1] > ball_radius - 1e-6);
     CHECK(cloth.positions[1] < 0.0);
+}
+
+TEST_CASE("contact and bending: the device agrees with the reference", "[filter][contact][bending][whole_step]") {
+    constexpr Options options{.limits_stretch = true, .integrates = true, .keeps_contacts = true, .bends = true};
+    for (const MovingCloth& cloth : small_cloths())
+        for (const auto& [sub_steps, rigidity] : {std::pair{3, 1e-3f}, {12, 0.02f}, {12, 50.0f}})
+            for (const std::uint32_t work_group_size : {1u, 64u}) {
+                Parameters parameters = tight(sub_steps, 1.05f);
+                parameters.acceleration = {0.5f, -9.81f, 0.25f};
+                parameters.damping = 0.4f;
+                parameters.bending = rigidity;
+                Options sized = options;
+                sized.work_group_size = work_group_size;
+                CAPTURE(cloth.rest_areas.size(), sub_steps, rigidity, work_group_size);
+                const auto& [got, want] = check_step_against_reference(cloth, sized, parameters);
+                CHECK(greatest_depth(cloth, got.positions) <=
+                      elementwise_tolerance(40.0) * (greatest(cloth.positions) + 1.0));
+            }
+}
+
+TEST_CASE("contact and bending: the stiffer a sheet on a ball, the higher its corners come to rest",
+          "[filter][contact][bending][whole_step]") {
+    constexpr Options options{.limits_stretch = true, .integrates = true, .keeps_contacts = true, .bends = true};
+    double last_corner = -1.0;
+    for (const float rigidity : {0.0f, 1e-3f, 2e-2f, 2e-1f}) {
+        MovingCloth cloth = sheet_over_ball(25);
+        StrainLimiter limiter(device().context, device().id, cloth.topology, options);
+        const Parameters parameters{.stretch_ceiling = 1.1f,
+                                    .acceleration = {0.0f, -9.81f, 0.0f},
+                                    .damping = 2.0f,
+                                    .bending = rigidity,
+                                    .bending_iterations = 4};
+        double in_motion = 0.0, at_rest = 0.0, stretch = 0.0;
+        constexpr int frames = 180;
+        Ended end;
+        for (int frame = 0; frame < frames; ++frame) {
+            CAPTURE(rigidity, frame);
+            end = step_over_ball(limiter, cloth, options, parameters);
+            double& area_change = frame < frames - 30 ? in_motion : at_rest;
+            area_change = std::max(area_change, static_cast<double>(end.stats.max_area_change));
+            stretch = std::max(stretch, static_cast<double>(end.stats.max_stretch));
+        }
+        double speed = greatest(cloth.velocities), corner = cloth.positions[1];
+        std::printf("%g in %g rest %g stretch %g speed %g corner %g\n", rigidity, in_motion, at_rest, stretch, speed,
+                    corner);
+        CHECK(corner > last_corner);
+        last_corner = corner;
+    }
 }
 
 TEST_CASE("contact: the buffer is asked for with the option, and only then", "[filter][contact]") {

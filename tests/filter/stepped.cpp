@@ -25,10 +25,11 @@ Ended step_on_device(const MovingCloth& cloth, const Options& options, const Par
 Ended step_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
     reference::StrainLimiter limiter(cloth.topology, options);
     Ended end{cloth.positions, cloth.velocities, {}};
-    std::span<const double> shapes, contacts, hinges;
+    std::span<const double> shapes, contacts, hinges, accelerations;
     if (options.limits_stretch) shapes = cloth.rest_shapes;
     if (options.keeps_contacts) contacts = cloth.contacts;
     if (options.bends) hinges = cloth.rest_hinges;
+    if (options.acceleration_per_vertex) accelerations = cloth.accelerations;
     limiter.enqueue({.positions = cloth.positions,
                      .velocities = end.velocities,
                      .inverse_masses = cloth.inverse_masses,
@@ -37,7 +38,8 @@ Ended step_with_reference(const MovingCloth& cloth, const Options& options, cons
                      .rest_shapes = shapes,
                      .contacts = contacts,
                      .end_positions = end.positions,
-                     .rest_hinges = hinges},
+                     .rest_hinges = hinges,
+                     .accelerations = accelerations},
                     parameters);
     end.stats = limiter.read_stats();
     return end;

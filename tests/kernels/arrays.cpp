@@ -79,6 +79,16 @@ std::vector<cl_float4> predicted_of(std::span<const Cloth> cloths, const std::ve
     return all;
 }
 
+std::vector<cl_float4> accelerations_of(std::span<const Cloth> cloths, const std::vector<std::uint32_t>& places) {
+    std::vector<cl_float4> all(places.size());
+    std::size_t i = 0;
+    for (const Cloth& cloth : cloths)
+        for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v, ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                all[places[i]].s[k] = static_cast<float>(cloth.accelerations[3 * v + k]);
+    return all;
+}
+
 // ḡ_k = s √(w_k / 2) g_k in units of 1/32767, (α − 1)/α, and √(α D)/A.
 std::vector<Gradients> gradients_of(std::span<const Cloth> cloths, std::span<const ScaledSolve> solves,
                                     const host::Adjacency& adjacency,
@@ -203,7 +213,9 @@ Arrays::Arrays(std::span<const Cloth> source_cloths, Matrix matrix, const Parame
       rest_hinges(never_empty(placed(sources, &Cloth::rest_hinges, 2, {2, array_offset}))),
       rest_shapes(placed(sources, &Cloth::rest_shapes, 4, {4, array_offset})),
       stretch_ceilings(placed(sources, &Cloth::stretch_ceilings, 1, {1, array_offset})),
-      contacts(placed(sources, &Cloth::contacts, 8, {8, array_offset})) {
+      contacts(placed(sources, &Cloth::contacts, 8, {8, array_offset})),
+      accelerations(accelerations_of(source_cloths, vertex_places)),
+      caller_accelerations(placed(sources, &Cloth::accelerations, 3, position)) {
     for (std::size_t c = 0; c < cloth_count(); ++c) {
         const std::vector<double>& b = solves[c].right_hand_side;
         write_partial_sum(c, APSLK_PARTIAL_RESIDUAL_EVEN, squared_norm(solves[c], b));

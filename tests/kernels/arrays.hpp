@@ -74,6 +74,8 @@ struct Arrays {
     DeviceArray<cl_float4> bending_residuals, bending_steps, next_bending_steps;
     DeviceArray<float> rest_hinges;                              ///< the caller's
     DeviceArray<float> rest_shapes, stretch_ceilings, contacts;  ///< the caller's too
+    DeviceArray<cl_float4> accelerations;                        ///< what predict_positions makes
+    DeviceArray<float> caller_accelerations;                     ///< placed as the positions are
 
     std::size_t cloth_count() const { return sources.size(); }
     /// The cloth's numbers out of an array over (padded) triangles, in the caller's order.

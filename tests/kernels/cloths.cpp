@@ -66,6 +66,7 @@ Cloth make_cloth(const Mesh& mesh, std::uint32_t seed) {
                               {normal.x(), normal.y(), normal.z(), offset, n[4], n[5], n[6], std::abs(n[7])});
     }
     round_to_float(cloth.contacts);
+    cloth.accelerations = random_numbers(cloth.positions.size(), -20.0, 20.0, seed + 7);
     return cloth;
 }
 

@@ -29,6 +29,7 @@ struct Cloth {
     std::vector<double> stretch_ceilings;  ///< [T], from 1.02 to 1.2, every ninth 0
     /// [8V], Buffers::contacts: planes up to 0.1 m before and behind `positions`, every fifth vertex without one.
     std::vector<double> contacts;
+    std::vector<double> accelerations;  ///< m/s², [3V], up to 20 either way
 };
 
 Cloth make_cloth(const Mesh& mesh, std::uint32_t seed);

@@ -25,6 +25,7 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
         define("APSLK_REGULARIZATION_PER_TRIANGLE", build.alpha_per_triangle ? 1 : 0) +
         define("APSLK_CHEBYSHEV", build.chebyshev ? 1 : 0) + define("APSLK_INTEGRATES", build.integrates ? 1 : 0) +
         define("APSLK_KEEPS_CONTACTS", build.keeps_contacts ? 1 : 0) + define("APSLK_BENDS", build.bends ? 1 : 0) +
+        define("APSLK_ACCELERATION_PER_VERTEX", build.acceleration_per_vertex ? 1 : 0) +
         define("APSLK_LIMITS_STRETCH", build.limits_stretch ? 1 : 0) +
         define("APSLK_STRETCH_CEILING_PER_TRIANGLE", build.limits_stretch ? 1 : 0);
     // Never released, see transfer_queue() in support/opencl.cpp.
@@ -43,7 +44,7 @@ const host::Kernel& kernel(const Arrays& arrays, const Build& build, std::string
     return kernel;
 }
 
-// As a caller's buffers; α only where there is one for each triangle.
+// As a caller's buffers; α and accelerations only where there is one for each triangle or vertex.
 Buffers caller(const Arrays& a, const Build& build) {
     const auto view = [](const DeviceArray<float>& array, std::uint64_t floats) {
         return BufferView{array.get(), static_cast<std::size_t>(floats) * sizeof(float)};
@@ -56,7 +57,9 @@ Buffers caller(const Arrays& a, const Build& build) {
             .rest_shapes = view(a.rest_shapes, a.array_offset),
             .stretch_ceilings = view(a.stretch_ceilings, a.array_offset),
             .contacts = view(a.contacts, a.array_offset),
-            .rest_hinges = view(a.rest_hinges, a.array_offset)};
+            .rest_hinges = view(a.rest_hinges, a.array_offset),
+            .accelerations = build.acceleration_per_vertex ? view(a.caller_accelerations, a.position_placement.offset)
+                                                           : BufferView{}};
 }
 
 void run(const host::Kernel& kernel, std::uint32_t groups, const Build& build, std::size_t cloths) {

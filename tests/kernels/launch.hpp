@@ -20,6 +20,7 @@ struct Build {
     bool integrates = false;
     bool keeps_contacts = false;
     bool bends = false;
+    bool acceleration_per_vertex = false;
 };
 
 /// 1, 32, 64 and 256 work-items a group, as far as the device goes.

@@ -78,7 +78,7 @@ class Taken(unittest.TestCase):
         made = limiter(cloth.triangles, cloth.vertex_count)
         defaults = made.default_parameters()
         self.assertEqual(made.limit(*cloth.arrays())[0].tobytes(), made.limit(*cloth.arrays(), **defaults)[0].tobytes())
-        arrays = {"rest_shapes", "contacts", "rest_hinges"}  # where options ask for them; there is no default
+        arrays = {"rest_shapes", "contacts", "rest_hinges", "accelerations"}  # where options ask for them; there is no default
         self.assertEqual(set(defaults) | arrays, set(apsl.Parameters.__annotations__))
 
     def test_every_resolved_option_is_taken(self):

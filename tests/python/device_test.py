@@ -115,10 +115,11 @@ class Same(unittest.TestCase):
     def test_an_array_for_each_triangle_and_whole_steps(self):
         cloth, count = self.cloth, len(self.cloth.triangles)
         options = {"limits_stretch": True, "stretch_ceiling_per_triangle": True, "integrates": True,
-                   "keeps_contacts": True}
+                   "keeps_contacts": True, "acceleration_per_vertex": True}
         numbers = {"rest_shapes": apsl.rest_shapes(cloth.positions, cloth.triangles),
                    "stretch_ceiling": np.linspace(1.1, 1.3, count),
-                   "contacts": np.tile([0, 1, 0, -0.002, 0, 0, 0, 0.5], (cloth.vertex_count, 1))}
+                   "contacts": np.tile([0, 1, 0, -0.002, 0, 0, 0, 0.5], (cloth.vertex_count, 1)),
+                   "accelerations": cloth.positions * [2, -1, 3]}
         settings = {**self.parameters, "acceleration": (0, -9.81, 0)}
         moved, limited, stats = limiter(cloth.triangles, cloth.vertex_count, **options).step(
             *self.numbers, **numbers, **settings)

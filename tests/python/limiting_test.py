@@ -138,6 +138,24 @@ class WholeStep(unittest.TestCase):
         with self.assertRaisesRegex(apsl.Error, "contacts: got nothing"):
             made.step(CORNER, velocities, [2, 2, 2], [0.5])
 
+    def test_each_vertex_falls_by_its_own_acceleration(self):
+        made = limiter(ONE_TRIANGLE, 3, integrates=True, acceleration_per_vertex=True)
+        arrays, winds = (CORNER, np.zeros((3, 3)), [2, 2, 0], [0]), np.array([[1, 2, 3], [-4, 0, 0.5], [9, 9, 9]])
+        settings = {"time_step": TIME_STEP, "sub_steps": 2, "acceleration": (0, -8, 4)}
+        positions, velocities, stats = made.step(*arrays, accelerations=winds, **settings)
+        # One part: u = (g + a) Δt, and x moves on by u Δt. The last vertex is pinned.
+        expected = (winds + [0, -8, 4]) * TIME_STEP * [[1], [1], [0]]
+        np.testing.assert_allclose(velocities, expected, rtol=1e-6)
+        np.testing.assert_allclose(positions, CORNER + expected * TIME_STEP, atol=1e-7)
+        self.assertEqual(stats.status, "ok")
+        for wrong in (winds[:2], winds[:, :2], "x"):
+            with self.assertRaisesRegex(apsl.Error, "accelerations"):
+                made.step(*arrays, accelerations=wrong)
+        with self.assertRaisesRegex(apsl.Error, "accelerations: got nothing"):
+            made.step(*arrays)
+        with self.assertRaisesRegex(apsl.Error, "acceleration_per_vertex is on, which needs integrates"):
+            limiter(ONE_TRIANGLE, 3, acceleration_per_vertex=True)
+
     def test_a_fold_that_was_opened_closes_again(self):
         pair = [[0, 1, 2], [1, 0, 3]]
         fold = [[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [0, 0.5, 1]]

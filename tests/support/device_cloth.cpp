@@ -101,6 +101,8 @@ MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed) {
                                                      number(-1.0, 1.0), number(-1.0, 1.0), number(0.0, 1.0)});
     }
     round_to_float(cloth.contacts);
+    for (std::size_t n = 0; n < cloth.positions.size(); ++n) cloth.accelerations.push_back(number(-20.0, 20.0));
+    round_to_float(cloth.accelerations);
     return cloth;
 }
 
@@ -125,7 +127,8 @@ CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options&
       rest_shapes(placed(cloths, &MovingCloth::rest_shapes, {4, 4}, offset)),
       stretch_ceilings(placed(cloths, &MovingCloth::stretch_ceilings, {1, 1}, offset)),
       contacts(placed(cloths, &MovingCloth::contacts, {8, 8}, offset)),
-      rest_hinges(placed(cloths, &MovingCloth::rest_hinges, {2, 2}, offset)) {
+      rest_hinges(placed(cloths, &MovingCloth::rest_hinges, {2, 2}, offset)),
+      accelerations(placed(cloths, &MovingCloth::accelerations, layout_of_positions(options), offset)) {
 }
 
 Buffers CallerBuffers::views() const {
@@ -140,6 +143,7 @@ Buffers CallerBuffers::views() const {
     if (options.stretch_ceiling_per_triangle) views.stretch_ceilings = {stretch_ceilings.get(), bytes};
     if (options.keeps_contacts) views.contacts = {contacts.get(), bytes};
     if (options.bends) views.rest_hinges = {rest_hinges.get(), bytes};
+    if (options.acceleration_per_vertex) views.accelerations = {accelerations.get(), bytes};
     return views;
 }
 
@@ -163,7 +167,7 @@ std::vector<float> without_gaps(const std::vector<float>& all, const Layout& lay
 
 std::vector<float> CallerBuffers::read_velocities() const {
     for (const auto* array : {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes,
-                              &stretch_ceilings, &contacts, &rest_hinges})
+                              &stretch_ceilings, &contacts, &rest_hinges, &accelerations})
         array->read();
     return without_gaps(velocities.read(), layout_of_velocities(options), offset, vertex_count, "velocities");
 }

@@ -28,6 +28,7 @@ struct MovingCloth {
     /// [8V], Buffers::contacts: planes that about half of the vertices end a step behind, a third of an edge deep at
     /// most, every fifth vertex without one.
     std::vector<double> contacts;
+    std::vector<double> accelerations;  ///< m/s², [3V], up to 20 either way
 };
 
 /// The mesh at rest where it lies, wavy now and about to be stretched by some 15 %: unequal masses, two pins.
@@ -45,7 +46,7 @@ struct CallerBuffers {
     std::size_t offset;
     std::size_t vertex_count;
     DeviceArray<float> positions, velocities, inverse_masses, rest_areas, regularization, rest_shapes, stretch_ceilings,
-        contacts, rest_hinges;
+        contacts, rest_hinges, accelerations;
 
     Buffers views() const;
     /// [3V] of all cloths, without stride and offset. Checks the guard bands of every buffer.

@@ -69,7 +69,7 @@ class StrainLimiter:
              rest_areas: npt.ArrayLike, **parameters: Unpack[Parameters],
              ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32], Stats]:
         """A whole time step of a limiter made with integrates=True: positions and velocities at its end, float32 [V, 3]
-        in new arrays. `acceleration` and `damping` act in every small step.
+        in new arrays. `acceleration`, `accelerations` and `damping` act in every small step.
 
         The arguments are those of limit(); velocities are those at the start of the step. Raises Error likewise.
         """
@@ -89,9 +89,9 @@ class StrainLimiter:
 
         queue: a pyopencl.CommandQueue of the context and device. Arrays: what limit() takes, 32-bit floats laid out as
         the options say, each a pyopencl.array.Array, a pyopencl.Buffer, or a pair of a buffer and an offset in bytes;
-        to be kept until the event completes. So are `rest_shapes`, `contacts` and `rest_hinges`, and where there is one
-        for each triangle `regularization` and `stretch_ceiling`. velocities: None with positions_only. wait_for: a list of events that
-        the call starts after, besides those of the Arrays. In place of any OpenCL object its handle as an integer.
+        to be kept until the event completes. So are `rest_shapes`, `contacts`, `rest_hinges` and `accelerations`, and
+        where there is one for each triangle `regularization` and `stretch_ceiling`. velocities: None with
+        positions_only. wait_for: a list of events that the call starts after, besides those of the Arrays. In place of any OpenCL object its handle as an integer.
         Returns a pyopencl.Event, or where pyopencl is not imported the handle of an event, which the caller releases.
         Raises Error for what does not fit, before anything is queued.
         """
@@ -149,7 +149,7 @@ class StrainLimiter:
 
 _optional_arrays = {"regularization": "regularization_per_triangle", "rest_shapes": "limits_stretch",
                     "stretch_ceiling": "stretch_ceiling_per_triangle", "contacts": "keeps_contacts",
-                    "rest_hinges": "bends"}
+                    "rest_hinges": "bends", "accelerations": "acceleration_per_vertex"}
 
 
 def _check_arrays(call: str, options: dict[str, Any], settings: dict[str, Any]) -> None:
@@ -172,4 +172,4 @@ def _layouts(vertices: int, triangles: int, hinges: int,
     return {"positions": vectors("position"), "velocities": vectors("velocity"),
             "inverse_masses": ((vertices,), (4 * options["inverse_mass_stride"],)), "rest_areas": numbers,
             "regularization": numbers, "rest_shapes": ((triangles, 4), (16, 4)), "stretch_ceiling": numbers,
-            "contacts": ((vertices, 8), (32, 4)), "rest_hinges": ((hinges, 2), (8, 4))}
+            "contacts": ((vertices, 8), (32, 4)), "rest_hinges": ((hinges, 2), (8, 4)), "accelerations": vectors("position")}

@@ -29,6 +29,7 @@ class Options(TypedDict, total=False):
     integrates: bool  # a call is a whole time step: it returns positions too
     keeps_contacts: bool  # `contacts` are then given in every call
     bends: bool  # hinges resist bending: `rest_hinges` are then given in every call, and `bending` counts
+    acceleration_per_vertex: bool  # `accelerations` are then given in every call
 
 
 class DeviceOptions(Options, total=False):
@@ -63,6 +64,7 @@ class Parameters(TypedDict, total=False):
     # body there, m/s, coefficient of friction
     contacts: Union[npt.ArrayLike, DeviceArray]
     acceleration: Sequence[float]  # m/s², three, with integrates
+    accelerations: Union[npt.ArrayLike, DeviceArray]  # m/s², [V, 3], with acceleration_per_vertex, beside acceleration
     damping: float  # 1/s, ≥ 0, with integrates
     rest_hinges: Union[npt.ArrayLike, DeviceArray]  # [H, 2], with bends: see rest_hinges()
     bending: float  # N·m, ≥ 0, with bends: the cloth's rigidity

@@ -120,6 +120,14 @@ constexpr Options step_contact_ceiling{
     .execution = Execution::many_groups, .limits_stretch = true, .integrates = true, .keeps_contacts = true};
 constexpr Options step_bending{
     .execution = Execution::many_groups, .limits_stretch = true, .integrates = true, .bends = true};
+constexpr Options step_accelerations{
+    .execution = Execution::many_groups, .integrates = true, .acceleration_per_vertex = true};
+constexpr Options step_with_all{.execution = Execution::many_groups,
+                                .limits_stretch = true,
+                                .integrates = true,
+                                .keeps_contacts = true,
+                                .bends = true,
+                                .acceleration_per_vertex = true};
 constexpr Options one_group{.execution = Execution::one_group};
 
 Scenario one_cloth(std::string name, const Options& options, const Parameters& parameters, int calls = 1) {
@@ -179,6 +187,8 @@ std::vector<Scenario> small_scenarios() {
         one_cloth("step_contact_ceiling_64", groups_of_64(step_contact_ceiling), falling(growing(p))),
         one_cloth("step_bending", step_bending, bending(falling(with_ceiling(p)))),
         of("step_bending_64", groups_of_64(step_bending), bending(falling(with_ceiling(p))), small()),
+        one_cloth("step_accelerations_arrays", structure_of_arrays(step_accelerations), falling(p)),
+        of("step_with_all_64", groups_of_64(step_with_all), bending(falling(growing(p))), small()),
         one_cloth("one_group", one_group, short_solve(p)),
         of("one_group_xyzw_64", groups_of_64(xyzw(one_group)), small_steps(short_solve(p)), small()),
         of("one_group_arrays_64", groups_of_64(structure_of_arrays(one_group)), short_solve(p), small()),

@@ -13,6 +13,7 @@ using namespace apsl::reference;
 namespace {
 
 constexpr Options integrating{.integrates = true};
+constexpr Options accelerating{.integrates = true, .acceleration_per_vertex = true};
 
 // A triangle with two pinned vertices and a third above them: along its altitude one dimension, solvable by hand.
 struct Altitude {
@@ -21,6 +22,7 @@ struct Altitude {
     std::vector<double> velocities = std::vector<double>(9, 0.0);
     std::vector<double> inverse_masses{0, 0, 2};
     std::vector<double> rest_areas{0.5};
+    std::vector<double> accelerations = {};
 
     Stats step(const Parameters& parameters, const Options& options = integrating) {
         StrainLimiter limiter(topology, options);
@@ -29,7 +31,8 @@ struct Altitude {
                          .inverse_masses = inverse_masses,
                          .rest_areas = rest_areas,
                          .regularization = {},
-                         .end_positions = positions},
+                         .end_positions = positions,
+                         .accelerations = accelerations},
                         parameters);
         return limiter.read_stats();
     }
@@ -85,6 +88,38 @@ TEST_CASE("a whole step: free motion is that of symplectic Euler in the parts, w
     }
 }
 
+TEST_CASE("a whole step: a vertex' own acceleration adds to that of all, by hand") {
+    // Two sub-steps, so one part of 0.5 s: u = ṽ + (g + a) Δt, and x moves on by u Δt. What is pinned stays.
+    Altitude triangle;
+    triangle.rest_areas = {0.0};  // not limited
+    triangle.velocities[6] = 0.3;
+    triangle.accelerations = {7, 7, 7, 7, 7, 7, 0.2, -0.4, 0.6};
+    Parameters parameters = by_hand(2);
+    parameters.acceleration = {1.0f, -9.0f, 0.0f};
+    triangle.step(parameters, accelerating);
+    CHECK(triangle.velocities == std::vector<double>{0, 0, 0, 0, 0, 0, 0.3 + 1.2 * 0.5, -9.4 * 0.5, 0.6 * 0.5});
+    for (std::size_t n = 0; n < 9; ++n)
+        CHECK(triangle.positions[n] == Approx(Altitude().positions[n] + 0.5 * triangle.velocities[n]));
+}
+
+TEST_CASE("a whole step: it makes no difference whether all share an acceleration or each has the same") {
+    for (const float damping : {0.0f, 0.7f}) {
+        Altitude shared, own;
+        own.accelerations = {0, 1.5, 0, 0, 1.5, 0, 0, 1.5, 0};
+        Parameters parameters = by_hand(5);
+        parameters.damping = damping;
+        own.step(parameters, accelerating);
+        parameters.acceleration = {0.0f, 1.5f, 0.0f};
+        const Stats stats = shared.step(parameters);
+        CHECK(stats.sub_steps == 5);
+        for (std::size_t n = 0; n < 9; ++n) {
+            CAPTURE(damping, n);
+            CHECK(own.positions[n] == Approx(shared.positions[n]).margin(1e-12));
+            CHECK(own.velocities[n] == Approx(shared.velocities[n]).margin(1e-12));
+        }
+    }
+}
+
 TEST_CASE("a whole step: what hangs at rest stays at rest, however many parts there are") {
     // Gravity draws the vertex away from its edge; the area holds it. α is a compliance: what it yields is known.
     for (const int sub_steps : {2, 10, 40}) {
@@ -133,6 +168,14 @@ TEST_CASE("a whole step: what it needs") {
           "integrates is on, which needs execution many_groups");
     CHECK(message({}, {.positions_only = true, .integrates = true}) ==
           "integrates is on, which needs velocities: positions_only is on");
+    CHECK(message({}, {.acceleration_per_vertex = true}) == "acceleration_per_vertex is on, which needs integrates");
+    CHECK_THROWS_WITH(triangle.step({}, accelerating), "accelerations holds 0 numbers, expected 9");
+    triangle.accelerations.assign(9, 0.0);
+    CHECK_THROWS_WITH(triangle.step({}, integrating), "accelerations holds 9 numbers, expected 0");
+    triangle.accelerations[7] = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH(triangle.step({}, accelerating),
+                      "accelerations of number 7 is nan, expected a finite number (m/s2)");
+    triangle.accelerations.clear();
     CHECK_THROWS_WITH(
         StrainLimiter(triangle.topology, integrating)
             .enqueue({triangle.positions, triangle.velocities, triangle.inverse_masses, triangle.rest_areas, {}}, {}),
