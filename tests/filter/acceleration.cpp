@@ -63,7 +63,7 @@ TEST_CASE("acceleration of each vertex: the device agrees with the reference", "
             check_step_against_reference(cloth, sized, falling(24));
             sized = with_all;
             sized.work_group_size = work_group_size;
-            Parameters parameters = falling(12);
+            Parameters parameters = falling(6);
             parameters.stretch_ceiling = 1.05f;
             parameters.bending = 1e-3f;
             check_step_against_reference(cloth, sized, parameters);

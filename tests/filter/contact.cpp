@@ -79,14 +79,19 @@ Ended step_over_ball(StrainLimiter& limiter, MovingCloth& cloth, const Options& 
     return end;
 }
 
-// Kinetic and of height, J.
-double energy_of(const MovingCloth& cloth, const Ended& end) {
+// J.
+double kinetic_energy_of(const MovingCloth& cloth) {
     double energy = 0.0;
-    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v) {
-        const double* u = end.velocities.data() + 3 * v;
-        energy += (9.81 * end.positions[3 * v + 1] + 0.5 * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2])) /
-                  cloth.inverse_masses[v];
-    }
+    for (std::size_t n = 0; n < cloth.velocities.size(); ++n)
+        energy += 0.5 * cloth.velocities[n] * cloth.velocities[n] / cloth.inverse_masses[n / 3];
+    return energy;
+}
+
+// Kinetic and of height, J.
+double energy_of(const MovingCloth& cloth) {
+    double energy = kinetic_energy_of(cloth);
+    for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v)
+        energy += 9.81 * cloth.positions[3 * v + 1] / cloth.inverse_masses[v];
     return energy;
 }
 
@@ -155,7 +160,7 @@ TEST_CASE("contact: a sheet falls on a ball, and areas, ceiling and contact hold
     for (int frame = 0; frame < 90; ++frame) {
         CAPTURE(frame);
         const Ended end = step_over_ball(limiter, cloth, options, parameters);
-        const double energy = energy_of(cloth, end);
+        const double energy = energy_of(cloth);
         CHECK(energy < least_energy + 1e-4);
         least_energy = std::min(least_energy, energy);
         double& area_change = frame < 45 ? in_motion : at_rest;
@@ -173,7 +178,7 @@ TEST_CASE("contact: a sheet falls on a ball, and areas, ceiling and contact hold
 TEST_CASE("contact and bending: the device agrees with the reference", "[filter][contact][bending][whole_step]") {
     constexpr Options options{.limits_stretch = true, .integrates = true, .keeps_contacts = true, .bends = true};
     for (const MovingCloth& cloth : small_cloths())
-        for (const auto& [sub_steps, rigidity] : {std::pair{3, 1e-3f}, {12, 0.02f}, {12, 50.0f}})
+        for (const auto& [sub_steps, rigidity] : {std::pair{3, 1e-3f}, {6, 0.02f}, {6, 50.0f}})
             for (const std::uint32_t work_group_size : {1u, 64u}) {
                 Parameters parameters = tight(sub_steps, 1.05f);
                 parameters.acceleration = {0.5f, -9.81f, 0.25f};
@@ -188,11 +193,12 @@ TEST_CASE("contact and bending: the device agrees with the reference", "[filter]
             }
 }
 
-TEST_CASE("contact and bending: the stiffer a sheet on a ball, the higher its corners come to rest",
+TEST_CASE("contact and bending: the stiffer a sheet, the higher its corners come to rest on a ball, and all holds",
           "[filter][contact][bending][whole_step]") {
     constexpr Options options{.limits_stretch = true, .integrates = true, .keeps_contacts = true, .bends = true};
+    constexpr int frames = 240;
     double last_corner = -1.0;
-    for (const float rigidity : {0.0f, 1e-3f, 2e-2f, 2e-1f}) {
+    for (const float rigidity : {1e-3f, 2e-2f, 2e-1f}) {
         MovingCloth cloth = sheet_over_ball(25);
         StrainLimiter limiter(device().context, device().id, cloth.topology, options);
         const Parameters parameters{.stretch_ceiling = 1.1f,
@@ -200,22 +206,25 @@ TEST_CASE("contact and bending: the stiffer a sheet on a ball, the higher its co
                                     .damping = 2.0f,
                                     .bending = rigidity,
                                     .bending_iterations = 4};
-        double in_motion = 0.0, at_rest = 0.0, stretch = 0.0;
-        constexpr int frames = 180;
-        Ended end;
+        double in_motion = 0.0, at_rest = 0.0, stretch = 0.0;  // greatest, of areas their change
         for (int frame = 0; frame < frames; ++frame) {
             CAPTURE(rigidity, frame);
-            end = step_over_ball(limiter, cloth, options, parameters);
-            double& area_change = frame < frames - 30 ? in_motion : at_rest;
+            const Ended end = step_over_ball(limiter, cloth, options, parameters);
+            double& area_change = frame < frames / 2 ? in_motion : at_rest;
             area_change = std::max(area_change, static_cast<double>(end.stats.max_area_change));
             stretch = std::max(stretch, static_cast<double>(end.stats.max_stretch));
         }
-        double speed = greatest(cloth.velocities), corner = cloth.positions[1];
-        std::printf("%g in %g rest %g stretch %g speed %g corner %g\n", rigidity, in_motion, at_rest, stretch, speed,
-                    corner);
-        CHECK(corner > last_corner);
+        CAPTURE(rigidity, stretch);
+        CHECK(in_motion < 0.01);
+        CHECK(at_rest < 0.002);
+        CHECK(stretch < 1.11);
+        CHECK(kinetic_energy_of(cloth) < 1e-3);  // J; it fell some 0.3 m with 0.2 kg: 0.6 J
+        const double corner = cloth.positions[1];
+        CHECK(corner > last_corner + 0.1);
         last_corner = corner;
+                    corner);
     }
+    CHECK(last_corner > 0.0);  // of the stiffest, which stands out from the ball
 }
 
 TEST_CASE("contact: the buffer is asked for with the option, and only then", "[filter][contact]") {
