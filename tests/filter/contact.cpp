@@ -222,7 +222,6 @@ TEST_CASE("contact and bending: the stiffer a sheet, the higher its corners come
         const double corner = cloth.positions[1];
         CHECK(corner > last_corner + 0.1);
         last_corner = corner;
-                    corner);
     }
     CHECK(last_corner > 0.0);  // of the stiffest, which stands out from the ball
 }
