@@ -74,13 +74,9 @@ TEST_CASE("acceleration of each vertex: the same bytes twice, in every layout of
     const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
     const Parameters parameters = falling(4);
     const Ended want = step_on_device(cloth, by_areas, parameters);
-    Options strided = by_areas;
-    strided.position_stride = 4;
-    strided.velocity_stride = 7;
-    Options apart = by_areas;
-    apart.position_stride = apart.velocity_stride = 1;
-    apart.position_component_stride = apart.velocity_component_stride = 64;
-    for (const Options& options : {by_areas, strided, apart}) {
+    std::vector<Options> layouts = strided_and_apart(by_areas);
+    layouts.push_back(by_areas);
+    for (const Options& options : layouts) {
         StrainLimiter limiter(device().context, device().id, cloth.topology, options);
         const CallerBuffers buffers({&cloth, 1}, options, 5);
         const std::vector<float> given = buffers.accelerations.read();
@@ -151,14 +147,7 @@ TEST_CASE("acceleration of each vertex: wind from the side draws a curtain out t
           "[filter][acceleration]") {
     // Pinned along its upper edge. A horizontal acceleration a of all free vertices against gravity g: it comes to hang
     // in the plane that leans out by atan(a/g).
-    const Mesh mesh = grid(13, 13, 1.0, 1.0, Diagonals::alternating);
-    MovingCloth cloth = moving_cloth(mesh, 1);
-    cloth.positions = mesh.positions;
-    for (double& x : cloth.positions) x = static_cast<float>(x);
-    cloth.inverse_masses = reference::inverse_masses<double>(*cloth.topology, cloth.rest_areas, 0.2);
-    for (std::size_t v = 0; v < 13; ++v) cloth.inverse_masses[v] = 0.0;
-    for (double& w : cloth.inverse_masses) w = static_cast<float>(w);
-    std::fill(cloth.velocities.begin(), cloth.velocities.end(), 0.0);
+    MovingCloth cloth = flat_sheet(13, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
     for (std::size_t n = 0; n < cloth.accelerations.size(); ++n) cloth.accelerations[n] = n % 3 == 2 ? 5.0 : 0.0;
     constexpr Options options{.limits_stretch = true, .integrates = true, .acceleration_per_vertex = true};
     StrainLimiter limiter(device().context, device().id, cloth.topology, options);

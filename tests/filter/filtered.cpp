@@ -36,6 +36,18 @@ std::vector<MovingCloth> small_cloths() {
             moving_cloth(right_triangle(), 7)};
 }
 
+MovingCloth flat_sheet(std::uint32_t n, const std::vector<std::uint32_t>& pins) {
+    const Mesh mesh = grid(n, n, 1.0, 1.0, Diagonals::alternating);
+    MovingCloth cloth = moving_cloth(mesh, 1);
+    cloth.positions = mesh.positions;
+    for (double& x : cloth.positions) x = static_cast<float>(x);
+    cloth.inverse_masses = reference::inverse_masses<double>(*cloth.topology, cloth.rest_areas, 0.2);
+    for (const std::uint32_t pin : pins) cloth.inverse_masses[pin] = 0.0;
+    for (double& w : cloth.inverse_masses) w = static_cast<float>(w);
+    std::fill(cloth.velocities.begin(), cloth.velocities.end(), 0.0);
+    return cloth;
+}
+
 std::vector<std::shared_ptr<const Topology>> topologies_of(const std::vector<MovingCloth>& cloths) {
     std::vector<std::shared_ptr<const Topology>> topologies;
     for (const MovingCloth& cloth : cloths) topologies.push_back(cloth.topology);

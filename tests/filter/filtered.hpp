@@ -28,6 +28,8 @@ constexpr Options by_chebyshev{.execution = Execution::many_groups, .solver = So
 
 /// One of each kind of small mesh.
 std::vector<MovingCloth> small_cloths();
+/// A square of n × n vertices, 1 m wide, flat and at rest, 0.2 kg/m², held at `pins`.
+MovingCloth flat_sheet(std::uint32_t n, const std::vector<std::uint32_t>& pins);
 std::vector<std::shared_ptr<const Topology>> topologies_of(const std::vector<MovingCloth>& cloths);
 
 /// For messages: "printed, assembled, many groups of 64".

@@ -45,6 +45,16 @@ Ended step_with_reference(const MovingCloth& cloth, const Options& options, cons
     return end;
 }
 
+std::vector<Options> strided_and_apart(const Options& options) {
+    Options strided = options;
+    strided.position_stride = 4;
+    strided.velocity_stride = 7;
+    Options apart = options;
+    apart.position_stride = apart.velocity_stride = 1;
+    apart.position_component_stride = apart.velocity_component_stride = 64;
+    return {strided, apart};
+}
+
 BothEnds check_step_against_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
     const Ended got = step_on_device(cloth, options, parameters),
                 want = step_with_reference(cloth, options, parameters);

@@ -19,6 +19,9 @@ Ended step_on_device(StrainLimiter& limiter, const MovingCloth& cloth, const Opt
 Ended step_on_device(const MovingCloth& cloth, const Options& options, const Parameters& parameters);
 Ended step_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters);
 
+/// These options with vectors of more numbers than three, and with x, y and z of all vertices apart.
+std::vector<Options> strided_and_apart(const Options& options);
+
 struct BothEnds {
     Ended got, want;
 };

@@ -34,16 +34,7 @@ double max_stretch(const MovingCloth& cloth, const std::vector<double>& velociti
 
 /// A square of n × n vertices, 1 m wide and hung by two corners, that falls with nothing but gravity and the limiter.
 struct Hanging {
-    explicit Hanging(std::uint32_t n) {
-        const Mesh mesh = grid(n, n, 1.0, 1.0, Diagonals::alternating);
-        cloth = moving_cloth(mesh, 1);
-        cloth.positions = mesh.positions;
-        for (double& x : cloth.positions) x = static_cast<float>(x);
-        cloth.inverse_masses = reference::inverse_masses<double>(*cloth.topology, cloth.rest_areas, 0.2);
-        for (const std::uint32_t pin : {0u, n - 1}) cloth.inverse_masses[pin] = 0.0;
-        for (double& w : cloth.inverse_masses) w = static_cast<float>(w);
-        std::fill(cloth.velocities.begin(), cloth.velocities.end(), 0.0);
-    }
+    explicit Hanging(std::uint32_t n) : cloth(flat_sheet(n, {0, n - 1})) {}
 
     void accelerate(double time_step) {
         for (std::size_t v = 0; v < cloth.inverse_masses.size(); ++v)

@@ -73,13 +73,7 @@ TEST_CASE("a whole step: strides, components apart and an offset are as in a fil
     const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
     const Parameters parameters = falling(4);
     const Ended want = step_on_device(cloth, by_areas, parameters);
-    Options strided = by_areas;
-    strided.position_stride = 4;
-    strided.velocity_stride = 7;
-    Options apart = by_areas;
-    apart.position_stride = apart.velocity_stride = 1;
-    apart.position_component_stride = apart.velocity_component_stride = 64;
-    for (const Options& options : {strided, apart}) {
+    for (const Options& options : strided_and_apart(by_areas)) {
         StrainLimiter limiter(device().context, device().id, cloth.topology, options);
         const CallerBuffers buffers({&cloth, 1}, options, 5);
         filter(limiter, buffers, {&parameters, 1});
@@ -119,19 +113,6 @@ TEST_CASE("a whole step: a target that is met leaves free motion", "[filter][who
 
 namespace {
 
-/// A square of n × n vertices, 1 m wide and hung by two corners, at rest.
-MovingCloth hung_by_two_corners(std::uint32_t n) {
-    const Mesh mesh = grid(n, n, 1.0, 1.0, Diagonals::alternating);
-    MovingCloth cloth = moving_cloth(mesh, 1);
-    cloth.positions = mesh.positions;
-    for (double& x : cloth.positions) x = static_cast<float>(x);
-    cloth.inverse_masses = reference::inverse_masses<double>(*cloth.topology, cloth.rest_areas, 0.2);
-    for (const std::uint32_t pin : {0u, n - 1}) cloth.inverse_masses[pin] = 0.0;
-    for (double& w : cloth.inverse_masses) w = static_cast<float>(w);
-    std::fill(cloth.velocities.begin(), cloth.velocities.end(), 0.0);
-    return cloth;
-}
-
 constexpr float gravity = 9.81f;  // m/s²
 
 /// Of motion, J.
@@ -156,7 +137,7 @@ double potential_energy(const MovingCloth& cloth) {
 
 TEST_CASE("a whole step: a curtain falls, swings and comes to rest with its areas and its ceiling",
           "[filter][whole_step]") {
-    MovingCloth cloth = hung_by_two_corners(33);
+    MovingCloth cloth = flat_sheet(33, {0, 32});
     StrainLimiter limiter(device().context, device().id, cloth.topology, with_ceiling);
     const Parameters parameters{.stretch_ceiling = 1.1f, .acceleration = {0.0f, -gravity, 0.0f}, .damping = 1.0f};
     double area_change = 0.0, stretch = 0.0;
@@ -180,7 +161,7 @@ TEST_CASE("a whole step: a curtain falls, swings and comes to rest with its area
 
 TEST_CASE("a whole step: with far too few sub-steps a curtain gives way, gains no energy and recovers",
           "[filter][whole_step]") {
-    MovingCloth cloth = hung_by_two_corners(65);
+    MovingCloth cloth = flat_sheet(65, {0, 64});
     StrainLimiter limiter(device().context, device().id, cloth.topology, with_ceiling);
     const Parameters parameters{.sub_steps = 5, .stretch_ceiling = 1.1f, .acceleration = {0.0f, -gravity, 0.0f}};
     float greatest_mass_ratio = 0.0f, greatest_stretch = 0.0f, stretch_at_end = 0.0f;

@@ -91,7 +91,8 @@ class StrainLimiter:
         the options say, each a pyopencl.array.Array, a pyopencl.Buffer, or a pair of a buffer and an offset in bytes;
         to be kept until the event completes. So are `rest_shapes`, `contacts`, `rest_hinges` and `accelerations`, and
         where there is one for each triangle `regularization` and `stretch_ceiling`. velocities: None with
-        positions_only. wait_for: a list of events that the call starts after, besides those of the Arrays. In place of any OpenCL object its handle as an integer.
+        positions_only. wait_for: a list of events that the call starts after, besides those of the Arrays. In place of
+        any OpenCL object its handle as an integer.
         Returns a pyopencl.Event, or where pyopencl is not imported the handle of an event, which the caller releases.
         Raises Error for what does not fit, before anything is queued.
         """
@@ -172,4 +173,5 @@ def _layouts(vertices: int, triangles: int, hinges: int,
     return {"positions": vectors("position"), "velocities": vectors("velocity"),
             "inverse_masses": ((vertices,), (4 * options["inverse_mass_stride"],)), "rest_areas": numbers,
             "regularization": numbers, "rest_shapes": ((triangles, 4), (16, 4)), "stretch_ceiling": numbers,
-            "contacts": ((vertices, 8), (32, 4)), "rest_hinges": ((hinges, 2), (8, 4)), "accelerations": vectors("position")}
+            "contacts": ((vertices, 8), (32, 4)), "rest_hinges": ((hinges, 2), (8, 4)),
+            "accelerations": vectors("position")}
