@@ -226,7 +226,6 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
         if (effective > 0.0f) {
             float4 total = total_correction[i];
             float tension = 0.0f;  // K w'
-            float kept = 1.0f;     // of the velocity
             float4 change = (float4)(0.0f);
             if (small_step.solved) {
                 const apslk_corner_sums sums =
@@ -238,7 +237,7 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
             const float stiffness = counted_stiffness(given, effective, tension);
             const float taken = fmin(inverse_mass_under_tension(given, stiffness), effective);
             change *= taken / effective;
-            kept = velocity_kept(given, taken);
+            const float kept = velocity_kept(given, taken);
             if (small_step.renews_masses) {
                 total.w = fmax(stiffness, APSLK_STIFFNESS_KEPT * total.w);
                 x.w = inverse_mass_under_tension(given, total.w);
@@ -259,15 +258,22 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
                 total += parts_left * change;
 #if APSLK_INTEGRATES
                 // After the last part only positions are mended.
-                if (small_step.sub_step < small_step.small_steps) step = kept * (step + parts * change);
+                if (small_step.sub_step < small_step.small_steps) {
+                    step += parts * change;
+#if APSLK_LIMITS_STRETCH
+                    step *= kept;
+#endif
+                }
             }
             keep_in_small_step(&x, &step, &total, touched, i, small_step);
             if (onward > 0.0f) step = (float4)(after_free_part(free, i, step.xyz, given), 0.0f);
             motion[i] = (float4)(step.xyz, given);
 #else
                 step += parts * change;
+#if APSLK_LIMITS_STRETCH
                 total += (parts_left - 1.0f) / parts * (kept - 1.0f) * step;
                 step *= kept;
+#endif
 #if !APSLK_KEEPS_CONTACTS
                 motion[i] = (float4)(step.xyz, given);
 #endif
