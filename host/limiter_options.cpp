@@ -153,10 +153,10 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
 }
 
 std::uint32_t patch_triangles(const DeviceFacts& facts, const Options& options, std::size_t largest) {
-    const std::uint32_t most = facts.is_cpu ? 1024 : 2 * options.work_group_size;
-    if (options.execution == Execution::one_group) return most;
+    const std::size_t most = facts.is_cpu ? 1024 : 2 * std::size_t{options.work_group_size};
+    if (options.execution == Execution::one_group) return static_cast<std::uint32_t>(most);
     const std::size_t share = largest / (std::size_t{facts.compute_units} * 4);
-    return static_cast<std::uint32_t>(std::clamp<std::size_t>(share, 128, most));
+    return static_cast<std::uint32_t>(std::clamp(share, std::min<std::size_t>(128, most), most));
 }
 
 std::uint32_t group_count(const DeviceFacts& facts, const Options& options, std::uint32_t largest) {

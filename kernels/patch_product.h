@@ -32,12 +32,14 @@ typedef struct {
     uint begin, end;
 } apslk_patch_range;
 
+// Where there are fewer patches than groups, the groups without one lie between the others: pocl gives a thread
+// neighbouring groups, and each thread is to have as many patches.
 APSLK_INLINE apslk_patch_range patches_of(apslk_cloth cloth, bool active) {
-    const uint groups = (uint)get_num_groups(0);
-    const uint share = (cloth.patch_count + groups - 1u) / groups;
-    const uint begin = min((uint)get_group_id(0) * share, cloth.patch_count);
-    const uint end = active ? min(begin + share, cloth.patch_count) : begin;
-    const apslk_patch_range range = {cloth.patch_begin + begin, cloth.patch_begin + end};
+    const uint groups = (uint)get_num_groups(0), group = (uint)get_group_id(0);
+    const uint each = cloth.patch_count / groups, left = cloth.patch_count % groups;
+    const uint begin = cloth.patch_begin + group * each + group * left / groups;
+    const uint end = cloth.patch_begin + (group + 1u) * each + (group + 1u) * left / groups;
+    const apslk_patch_range range = {begin, active ? end : begin};
     return range;
 }
 
