@@ -39,6 +39,7 @@ std::string variant_name(const Options& options);
 struct Filtered {
     std::vector<double> velocities;  ///< m/s, [3V]
     Stats stats;
+    std::vector<double> positions{};  ///< m, [3V], with Options::integrates
 };
 
 /// One call on a limiter of its own.

@@ -69,13 +69,13 @@ CallFacts::CallFacts(const MovingCloth& cloth, const Options& options, const Par
 
     const auto time_step = static_cast<double>(parameters.time_step);
     const std::vector<double> x = end_of_step(cloth, cloth.velocities, time_step);
-    const std::vector<double> y = end_of_step(cloth, filtered.velocities, time_step);
-    greatest_position = std::max({largest(cloth.positions), largest(x), largest(y),
+    end = options.integrates ? filtered.positions : end_of_step(cloth, filtered.velocities, time_step);
+    greatest_position = std::max({largest(cloth.positions), largest(x), largest(end),
                                   time_step * largest(cloth.velocities), time_step * largest(filtered.velocities)});
     position_error = 2.0 * epsilon * (filtered.stats.sub_steps + 3) * greatest_position;
 
     const std::vector<double> areas_before = reference::areas<double>(*cloth.topology, x);
-    const std::vector<double> areas_after = reference::areas<double>(*cloth.topology, y);
+    const std::vector<double> areas_after = reference::areas<double>(*cloth.topology, end);
     const std::size_t count = cloth.rest_areas.size();
     before.assign(count, 0.0);
     after.assign(count, 0.0);
@@ -87,7 +87,7 @@ CallFacts::CallFacts(const MovingCloth& cloth, const Options& options, const Par
         before[a] = std::abs(areas_before[a] - rest_area) / rest_area;
         after[a] = std::abs(areas_after[a] - rest_area) / rest_area;
         const Triangle& triangle = cloth.topology->triangles()[a];
-        const std::array<double, 3> edges = edge_lengths(triangle, x), edges_after = edge_lengths(triangle, y);
+        const std::array<double, 3> edges = edge_lengths(triangle, x), edges_after = edge_lengths(triangle, end);
         const double edge = std::max(*std::max_element(edges.begin(), edges.end()),
                                      *std::max_element(edges_after.begin(), edges_after.end()));
         longest = std::max(longest, edge);

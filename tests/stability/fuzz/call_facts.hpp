@@ -24,6 +24,7 @@ struct CallFacts {
     double
         position_error;  ///< m, what rounding may have come to in a coordinate: the size of the numbers times epsilon
     double greatest_position;  ///< m, max |x|, |x + Δt v| before and after
+    std::vector<double> end;   ///< x + Δt v after, or where a whole step ends, m, [3V]
     /// Area changes |A − A⁰| / A⁰ at x + Δt v, [T], 0 where A⁰ ≤ 0, and how far off rounding may put each.
     std::vector<double> before, after, change_error;
     double max_before, max_after, rms_before, rms_after, max_change_error;

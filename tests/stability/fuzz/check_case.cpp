@@ -16,6 +16,10 @@ std::vector<MovingCloth> given(const FuzzCase& c, const FuzzCall& call, const st
         cloths = last;
         for (std::size_t n = 0; n < cloths.size(); ++n) {
             cloths[n].velocities = filtered[n].velocities;
+            if (c.options.integrates) {
+                cloths[n].positions = filtered[n].positions;
+                continue;
+            }
             for (std::size_t k = 0; k < cloths[n].positions.size(); ++k)
                 cloths[n].positions[k] =
                     static_cast<float>(cloths[n].positions[k] +
@@ -37,9 +41,10 @@ std::string difference_of(const std::vector<Filtered>& a, const std::vector<Filt
     std::ostringstream words;
     words.precision(9);
     for (std::size_t n = 0; n < a.size(); ++n) {
-        const bool velocities = !same_velocities(a[n].velocities, b[n].velocities);
+        const bool velocities =
+            !same_velocities(a[n].velocities, b[n].velocities) || !same_velocities(a[n].positions, b[n].positions);
         if (!velocities && same_bytes<Stats>({a[n].stats}, {b[n].stats})) continue;
-        words << ", cloth " << n << (velocities ? ": velocities" : ": statistics alone");
+        words << ", cloth " << n << (velocities ? ": where it ends" : ": statistics alone");
         for (const Stats& stats : {a[n].stats, b[n].stats})
             words << " (status " << static_cast<int>(stats.status) << ", sub-steps " << stats.sub_steps
                   << ", iterations " << stats.iterations << ", residual " << stats.residual << ", max "

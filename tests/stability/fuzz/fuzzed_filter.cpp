@@ -32,21 +32,23 @@ bool DeviceFilter::fits(const FuzzCase& c) const {
 std::vector<Filtered> DeviceFilter::call(const std::vector<MovingCloth>& cloths,
                                          std::span<const Parameters> parameters) {
     const CallerBuffers buffers(cloths, options_, offset_);
-    const DeviceArray<float>* const inputs[] = {
-        &buffers.positions,   &buffers.inverse_masses,   &buffers.rest_areas, &buffers.regularization,
-        &buffers.rest_shapes, &buffers.stretch_ceilings, &buffers.contacts};
+    std::vector<const DeviceArray<float>*> inputs{
+        &buffers.inverse_masses,   &buffers.rest_areas, &buffers.regularization, &buffers.rest_shapes,
+        &buffers.stretch_ceilings, &buffers.contacts,   &buffers.rest_hinges,    &buffers.accelerations};
+    if (!options_.integrates) inputs.push_back(&buffers.positions);
     std::vector<std::vector<float>> given;
     for (const auto* input : inputs) given.push_back(input->read());
     const std::vector<Stats> stats = filter(*limiter_, buffers, parameters);
     for (std::size_t n = 0; n < given.size(); ++n)
         if (!same_bytes(inputs[n]->read(), given[n])) throw std::runtime_error("an input buffer was written to");
 
-    const std::vector<float> velocities = buffers.read_velocities();
+    const std::vector<float> velocities = buffers.read_velocities(), positions = buffers.read_positions();
     std::vector<Filtered> results;
-    auto begin = velocities.begin();
+    std::ptrdiff_t begin = 0;
     for (std::size_t n = 0; n < cloths.size(); ++n) {
-        const auto end = begin + static_cast<std::ptrdiff_t>(cloths[n].velocities.size());
-        results.push_back({{begin, end}, stats[n]});
+        const std::ptrdiff_t end = begin + static_cast<std::ptrdiff_t>(cloths[n].velocities.size());
+        results.push_back({{velocities.begin() + begin, velocities.begin() + end}, stats[n]});
+        if (options_.integrates) results.back().positions = {positions.begin() + begin, positions.begin() + end};
         begin = end;
     }
     return results;
@@ -75,21 +77,27 @@ std::vector<Filtered> ReferenceFilter<Real>::call(const std::vector<MovingCloth>
         const std::vector<Real> shapes = real_where(options_.limits_stretch, cloth.rest_shapes);
         const std::vector<Real> ceilings = real_where(options_.stretch_ceiling_per_triangle, cloth.stretch_ceilings);
         const std::vector<Real> contacts = real_where(options_.keeps_contacts, cloth.contacts);
+        const std::vector<Real> hinges = real_where(options_.bends, cloth.rest_hinges);
+        const std::vector<Real> accelerations = real_where(options_.acceleration_per_vertex, cloth.accelerations);
         std::vector<Real> velocities = real(cloth.velocities);
+        std::vector<Real> ends = options_.integrates ? positions : std::vector<Real>{};
         const bool refused = refused_by_reference(cloth);
         try {
-            limiters_[n].enqueue({positions, velocities, masses, areas, alpha, shapes, ceilings, contacts},
-                                 parameters[n]);
+            limiters_[n].enqueue(
+                {positions, velocities, masses, areas, alpha, shapes, ceilings, contacts, ends, hinges, accelerations},
+                parameters[n]);
             if (refused) throw std::runtime_error("took what it has to refuse");
         } catch (const Error& error) {
             if (!refused) throw;
             if (std::string(error.what()).find('\n') != std::string::npos)
                 throw std::runtime_error("an error of several lines");
             results.push_back({cloth.velocities, {}});
+            if (options_.integrates) results.back().positions = cloth.positions;
             results.back().stats.status = Status::diverged;
             continue;
         }
-        results.push_back({{velocities.begin(), velocities.end()}, limiters_[n].read_stats()});
+        results.push_back(
+            {{velocities.begin(), velocities.end()}, limiters_[n].read_stats(), {ends.begin(), ends.end()}});
     }
     return results;
 }

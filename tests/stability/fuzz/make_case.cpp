@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t block_size = 100;
 // A driver compiles kernels for seconds and keeps them: so many sets of options at most.
-constexpr std::uint64_t option_sets = 17;
+constexpr std::uint64_t option_sets = 19;
 // Room for a component's run where x, y and z lie apart: more than the vertices of all meshes of a block.
 constexpr std::uint32_t most_vertices = 2048;
 
@@ -38,7 +38,13 @@ Options random_options(std::uint64_t number) {
         options.warm_start_sub_steps = 0;
         options.bound_interval = random.one_of({1u, 3u});
     }
-    if (number >= 15) {  // a stretch ceiling, for all triangles or one for each
+    if (number == 17) {  // a whole step without a ceiling
+        options = with_layout({.execution = Execution::many_groups}, options);
+        options.integrates = true;
+        options.acceleration_per_vertex = true;
+        return options;
+    }
+    if (number >= 15) {  // a stretch ceiling, for all triangles or one for each, or in a whole step with bending
         options.matrix = Matrix::consistent;
         options.apply = Apply::matrix_free;
         options.execution = Execution::many_groups;
@@ -46,6 +52,7 @@ Options random_options(std::uint64_t number) {
         options.warm_start_sub_steps = 0;
         options.limits_stretch = true;
         options.stretch_ceiling_per_triangle = number == 16;
+        options.integrates = options.bends = number == 18;
     }
     return options;
 }
@@ -67,7 +74,12 @@ Parameters random_parameters(Random& random, bool may_adapt, const Options& opti
     if (limits_stretch) p.most_sub_steps = p.sub_steps;
     if (may_follow && p.stepping != Stepping::whole_step && p.first_regularization == 0.0f && random.chance(0.7))
         p.most_sub_steps = random.one_of({0, p.sub_steps + 1, p.sub_steps + 7, p.sub_steps + 40});
-    if (keeps_contacts) {
+    if (options.integrates) {
+        p.acceleration = random.one_of<std::array<float, 3>>({{}, {0.0f, -9.81f, 0.0f}, {0.0f, 1e3f, -1.0f}});
+        p.damping = random.one_of({0.0f, 0.5f, 100.0f});
+        if (options.bends) p.bending = random.one_of({0.0f, 1e-6f, 1e-3f, 10.0f});
+    }
+    if (keeps_contacts || options.integrates) {
         p.sub_steps = std::max(p.sub_steps, 2);
         if (p.stepping == Stepping::whole_step) p.stepping = Stepping::automatic;
         p.most_sub_steps = std::max(p.most_sub_steps, p.sub_steps);
@@ -94,8 +106,8 @@ void CaseMaker::begin_block(std::uint64_t block) {
     block_ = block;
     Random random(seed_, 2 * block);
     options_ = random_options(block % option_sets);
-    // Every other time round, a stretch ceiling for each triangle comes with contacts.
-    options_.keeps_contacts = block % (2 * option_sets) == 2 * option_sets - 1;
+    // Every other time round, a ceiling for each triangle and whole steps come with contacts.
+    options_.keeps_contacts = block / option_sets % 2 == 1 && block % option_sets >= 16;
     meshes_.clear();
     for (std::uint32_t n = random.from_to(1, 3); n > 0; --n) meshes_.push_back(random_mesh(random));
     // Kernels are compiled for the greatest number of vertices in a patch: always that of this one.

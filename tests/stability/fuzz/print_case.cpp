@@ -42,8 +42,13 @@ void print(const MovingCloth& cloth, const Options& options, std::ostream& out) 
         out << ", inverse mass " << cloth.inverse_masses[v];
         if (options.keeps_contacts)
             for (std::size_t k = 0; k < 8; ++k) out << (k == 0 ? ", contact " : " ") << cloth.contacts[8 * v + k];
+        if (options.acceleration_per_vertex)
+            for (std::size_t k = 0; k < 3; ++k)
+                out << (k == 0 ? ", acceleration " : " ") << cloth.accelerations[3 * v + k];
         out << '\n';
     }
+    for (std::size_t h = 0; options.bends && 2 * h < cloth.rest_hinges.size(); ++h)
+        out << "  hinge " << h << ": " << cloth.rest_hinges[2 * h] << ' ' << cloth.rest_hinges[2 * h + 1] << '\n';
     for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a) {
         out << "  triangle " << a << ':';
         for (const std::uint32_t v : cloth.topology->triangles()[a]) out << ' ' << v;

@@ -44,6 +44,27 @@ Check check_velocities(const MovingCloth& cloth, const Filtered& filtered) {
     return {};
 }
 
+// Of a whole step: a pinned vertex goes its way, and where a call gives up or is switched off nothing moves.
+Check check_positions(const MovingCloth& cloth, const CallFacts& facts, const Parameters& parameters,
+                      const Filtered& filtered) {
+    if (filtered.stats.status == Status::diverged) {
+        if (!same_velocities(cloth.positions, filtered.positions)) return broken("diverged, but positions changed", {});
+        return {};
+    }
+    for (std::size_t n = 0; n < cloth.positions.size(); ++n) {
+        if (!std::isfinite(filtered.positions[n]) && std::isfinite(cloth.positions[n]))
+            return broken("a position that is not finite was written",
+                          {{"vertex", static_cast<double>(n / 3)}, {"position", filtered.positions[n]}});
+        if (cloth.inverse_masses[n / 3] != 0.0 || !facts.ordinary_numbers) continue;
+        const double expected = cloth.positions[n] + static_cast<double>(parameters.time_step) * cloth.velocities[n];
+        if (std::abs(filtered.positions[n] - expected) > 4.0 * facts.position_error)
+            return broken("a pinned vertex did not go its way", {{"vertex", static_cast<double>(n / 3)},
+                                                                 {"off", filtered.positions[n] - expected},
+                                                                 {"allowed", 4.0 * facts.position_error}});
+    }
+    return {};
+}
+
 Check check_idle(const MovingCloth& cloth, const Filtered& filtered) {
     if (filtered.stats.sub_steps == 0 && !same_velocities(cloth.velocities, filtered.velocities))
         return broken("no sub-step, but velocities changed", {});
@@ -60,8 +81,7 @@ Check check_outside(const MovingCloth& cloth, const CallFacts& facts, const Para
         const std::array<double, 3> normal{contact[0], contact[1], contact[2]};
         if (cloth.inverse_masses[v] == 0.0 || normal == std::array<double, 3>{}) continue;
         double depth = contact[3];
-        for (std::size_t k = 0; k < 3; ++k)
-            depth -= normal[k] * (cloth.positions[3 * v + k] + time_step * filtered.velocities[3 * v + k]);
+        for (std::size_t k = 0; k < 3; ++k) depth -= normal[k] * facts.end[3 * v + k];
         // Rounding, and normals that are not quite of length 1: what is left of a push, wherever the body comes from.
         const double way =
             std::abs(contact[3]) + facts.greatest_position + time_step * std::hypot(contact[4], contact[5], contact[6]);
@@ -78,6 +98,8 @@ Check check_off(const MovingCloth& cloth, const Filtered& filtered) {
     if (stats.status != Status::off)
         return broken("switched off, and the status is another", {{"status", static_cast<double>(stats.status)}});
     if (!same_velocities(cloth.velocities, filtered.velocities)) return broken("off, but velocities changed", {});
+    if (!filtered.positions.empty() && !same_velocities(cloth.positions, filtered.positions))
+        return broken("off, but positions changed", {});
     if (stats.sub_steps != 0 || stats.iterations != 0 || stats.max_area_change != 0.0f ||
         stats.rms_area_change != 0.0f || stats.offender != Offender::none)
         return broken("off, and statistics are not zero", {{"max", stats.max_area_change}});
@@ -132,7 +154,7 @@ Check check_status(const CallFacts& facts, const Parameters& parameters, const O
                                                                                  {"residual", stats.residual},
                                                                                  {"stretch", stats.max_stretch}});
     if (stats.status == Status::ok &&
-        stats.residual > std::max(ResolvedParameters(parameters).solve_tolerance, 1e-6f) * (1.0f + 1e-5f))
+        stats.residual > std::max(ResolvedParameters(parameters, options).solve_tolerance, 1e-6f) * (1.0f + 1e-5f))
         return broken("ok, but a solve missed the tolerance", {{"residual", stats.residual}});
     return {};
 }
@@ -262,11 +284,13 @@ std::optional<Violation> violation_of(const MovingCloth& cloth, const Options& o
     if (!parameters.enabled) return check_off(cloth, filtered);
     const CallFacts facts(cloth, options, parameters, filtered, filter.epsilon());
     Check check = check_velocities(cloth, filtered);
+    if (!check && options.integrates) check = check_positions(cloth, facts, parameters, filtered);
     if (!check) check = check_status(facts, parameters, options, filtered);
     if (!check) check = check_statistics(facts, parameters, filtered);
-    // Contact is part of both ends that are compared.
-    if (!check && !options.keeps_contacts) check = check_never_worse(facts, options, filtered);
+    // Contact is part of both ends that are compared, and so are a whole step's forces.
+    if (!check && !options.keeps_contacts && !options.integrates) check = check_never_worse(facts, options, filtered);
     if (options.keeps_contacts) return check ? check : check_outside(cloth, facts, parameters, filtered);
+    if (options.integrates) return check;
     // The bounds below are those of areas with the masses as given.
     if (options.limits_stretch) return check ? check : check_idle(cloth, filtered);
     if (!check) check = check_bound(cloth, facts, options, parameters, filtered);
@@ -277,7 +301,7 @@ std::optional<Violation> violation_of(const MovingCloth& cloth, const Options& o
 
 std::optional<Violation> disagreement(const MovingCloth& cloth, const Options& options, const Parameters& parameters,
                                       const Filtered& device, const Filtered& reference) {
-    if (refused_by_reference(cloth) || options.limits_stretch) return {};
+    if (refused_by_reference(cloth) || options.limits_stretch || options.integrates) return {};
     const CallFacts facts(cloth, options, parameters, device, epsilon);
     // Where the linearised areas are near the true ones and the matrix is far from singular: each of the two solves is
     // off by κ · tolerance in the scaled norm, κ ≤ (3 v + α − 1)/(α − 1), the device's matrix by its stored gradients.

@@ -109,6 +109,13 @@ void touch(Random random, MovingCloth& cloth, double size) {
     }
 }
 
+// Likewise.
+void push(Random random, MovingCloth& cloth) {
+    const double greatest = random.one_of({0.0, 10.0, 10.0, 1e4});
+    for (std::size_t n = 0; n < cloth.positions.size(); ++n)
+        cloth.accelerations.push_back(greatest * random.number(-1.0, 1.0));
+}
+
 }  // namespace
 
 MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const Topology> topology) {
@@ -126,6 +133,7 @@ MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const
     cloth.rest_areas = reference::areas<double>(*cloth.topology, cloth.positions);
     cloth.inverse_masses = reference::inverse_masses<double>(*cloth.topology, cloth.rest_areas, 0.2);
     cloth.rest_shapes = reference::rest_shapes<double>(*cloth.topology, cloth.positions);
+    cloth.rest_hinges = reference::rest_hinges<double>(*cloth.topology, cloth.positions);
     for (double& inverse_mass : cloth.inverse_masses)
         if (!std::isfinite(inverse_mass)) inverse_mass = 1.0;  // of triangles without area
     cloth.velocities.assign(cloth.positions.size(), 0.0);
@@ -137,12 +145,14 @@ MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const
         cloth.regularization.push_back(1.0 + alpha_above_1 * random.number(0.5, 1.5));
     describe_stretch_limits(random, cloth);
     touch(random, cloth, size);
+    push(random, cloth);
     if (random.chance(0.05)) {
         double& rest_area = cloth.rest_areas[random.below(cloth.rest_areas.size())];
         rest_area = random.one_of({0.0, -1.0, 1e-42, 1e-20, 1e20});
     }
-    for (auto* numbers : {&cloth.positions, &cloth.velocities, &cloth.inverse_masses, &cloth.rest_areas,
-                          &cloth.regularization, &cloth.rest_shapes, &cloth.stretch_ceilings, &cloth.contacts})
+    for (auto* numbers :
+         {&cloth.positions, &cloth.velocities, &cloth.inverse_masses, &cloth.rest_areas, &cloth.regularization,
+          &cloth.rest_shapes, &cloth.stretch_ceilings, &cloth.contacts, &cloth.rest_hinges, &cloth.accelerations})
         round_to_float(*numbers);
     return cloth;
 }

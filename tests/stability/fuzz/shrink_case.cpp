@@ -12,6 +12,18 @@
 namespace apsl::test {
 namespace {
 
+// What hinges of `before` have at rest, for those that are still there. Zeros for a hinge that only now is one.
+std::vector<double> kept_hinges(const Topology& before, const std::vector<double>& rest_hinges, const Topology& after) {
+    const std::vector<Hinge> old = before.hinges();
+    std::vector<double> kept;
+    for (const Hinge& hinge : after.hinges()) {
+        const auto found = std::find(old.begin(), old.end(), hinge);
+        const auto place = 2 * static_cast<std::size_t>(found - old.begin());
+        for (std::size_t k = 0; k < 2; ++k) kept.push_back(found == old.end() ? 0.0 : rest_hinges[place + k]);
+    }
+    return kept;
+}
+
 /// The case at hand, and changes tried on it.
 class Shrinker {
 public:
@@ -149,7 +161,9 @@ private:
                     cut(cloth.stretch_ceilings);
                     cloth.rest_shapes.erase(cloth.rest_shapes.begin() + static_cast<std::ptrdiff_t>(4 * first),
                                             cloth.rest_shapes.begin() + static_cast<std::ptrdiff_t>(4 * end));
-                    cloth.topology = Topology::build(triangles, cloth.inverse_masses.size());
+                    auto smaller = Topology::build(triangles, cloth.inverse_masses.size());
+                    cloth.rest_hinges = kept_hinges(*cloth.topology, cloth.rest_hinges, *smaller);
+                    cloth.topology = std::move(smaller);
                     return true;
                 });
                 changed |= dropped;
@@ -178,6 +192,7 @@ private:
             smaller.velocities.clear();
             smaller.inverse_masses.clear();
             smaller.contacts.clear();
+            smaller.accelerations.clear();
             const auto offsets = cloth.topology->corner_offsets();
             for (std::size_t v = 0; v < place.size(); ++v) {
                 if (offsets[v] == offsets[v + 1]) continue;
@@ -187,6 +202,7 @@ private:
                 for (std::size_t k = 0; k < 3; ++k) {
                     smaller.positions.push_back(cloth.positions[3 * v + k]);
                     smaller.velocities.push_back(cloth.velocities[3 * v + k]);
+                    smaller.accelerations.push_back(cloth.accelerations[3 * v + k]);
                 }
             }
             std::vector<Triangle> triangles(cloth.topology->triangles().begin(), cloth.topology->triangles().end());

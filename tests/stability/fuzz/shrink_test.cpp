@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The fuzzer's own parts: cases that repeat, and a shrinker that finds what was planted.
+#include "filter/stepped.hpp"
 #include "stability/fuzz/make_case.hpp"
 #include "stability/fuzz/print_case.hpp"
 #include "stability/fuzz/properties.hpp"
@@ -140,6 +141,40 @@ TEST_CASE("each property sees what breaks it") {
     MovingCloth infinite = cloth;
     infinite.positions[30] = std::numeric_limits<double>::infinity();
     CHECK(broken_property(infinite, {cloth.velocities, {}}, parameters) == "input that is not finite did not diverge");
+}
+
+TEST_CASE("each property of a whole step sees what breaks it") {
+    const Options options{.execution = Execution::many_groups, .integrates = true};
+    const Parameters parameters{.regularization = 1.5f, .sub_steps = 5, .tolerance = 1e-4f};
+    const MovingCloth cloth = a_cloth();
+    const Ended end = step_with_reference(cloth, options, parameters);
+    const Filtered good{end.velocities, end.stats, end.positions};
+    const auto property = [&](const Filtered& filtered, const Parameters& called) {
+        const auto violation = violation_of(cloth, options, called, filtered, Idle());
+        return violation ? violation->property : "";
+    };
+    CHECK(property(good, parameters).empty());
+
+    Filtered bad = good;
+    bad.positions[7] = std::nan("");
+    CHECK(property(bad, parameters) == "a position that is not finite was written");
+    bad = good;
+    REQUIRE(cloth.inverse_masses[0] == 0.0);
+    bad.positions[0] += 1e-4;
+    CHECK(property(bad, parameters) == "a pinned vertex did not go its way");
+    bad = good;
+    bad.velocities = cloth.velocities;
+    bad.stats.status = Status::diverged;
+    CHECK(property(bad, parameters) == "diverged, but positions changed");
+    bad.stats = {};
+    bad.stats.status = Status::off;
+    Parameters off = parameters;
+    off.enabled = false;
+    CHECK(property(bad, off) == "off, but positions changed");
+    bad = good;
+    for (std::size_t n = 0; n < bad.positions.size(); ++n)
+        if (cloth.inverse_masses[n / 3] > 0.0) bad.positions[n] *= 1.1;
+    CHECK(property(bad, parameters) == "the greatest area change is not that of the velocities");
 }
 
 TEST_CASE("bounds on corrections and momentum see what is beyond them") {
