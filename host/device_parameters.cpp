@@ -31,6 +31,7 @@ apslk_parameters device_parameters(const ResolvedParameters& p) {
             .damping = p.damping,
             .bending = p.bending,
             .bending_iterations = p.bending_iterations,
+            .given_small_steps = p.small_steps,
             .padding = {}};
 }
 

@@ -31,8 +31,8 @@ typedef struct {
     __global const float4* accelerations;
 } apslk_free_part;
 
-// Of all small steps of a time step, with nothing else to move the cloth: ends at kept ṽ + gain, and moves by Δt times
-// mean_kept ṽ + mean_gain. A vertex' own acceleration counts for `seconds` and `mean_seconds`.
+// Of all small steps of a time step, as many as were given, with nothing else to move the cloth: ends at kept ṽ + gain,
+// and moves by Δt times mean_kept ṽ + mean_gain. A vertex' own acceleration counts for `seconds` and `mean_seconds`.
 typedef struct {
     float3 gain, mean_gain;       // m/s
     float seconds, mean_seconds;  // s
@@ -40,25 +40,31 @@ typedef struct {
     __global const float4* accelerations;
 } apslk_free_step;
 
-APSLK_INLINE apslk_free_part free_part(__global const apslk_parameters* parameters,
-                                       __global const float4* accelerations) {
+APSLK_INLINE apslk_free_part one_of_parts(int parts, __global const apslk_parameters* parameters,
+                                          __global const float4* accelerations) {
     apslk_free_part part = {(float3)(0.0f), 0.0f, 1.0f, accelerations};
 #if APSLK_INTEGRATES
-    part.duration = parameters->time_step / (float)max(parameters->small_steps, 1);
+    part.duration = parameters->time_step / (float)parts;
     part.gain = part.duration * vload3(0, parameters->acceleration);
     part.kept = exp(-parameters->damping * part.duration);
 #else
+    (void)parts;
     (void)parameters;
 #endif
     return part;
+}
+
+APSLK_INLINE apslk_free_part free_part(__global const apslk_parameters* parameters,
+                                       __global const float4* accelerations) {
+    return one_of_parts(max(parameters->small_steps, 1), parameters, accelerations);
 }
 
 APSLK_INLINE apslk_free_step free_step(__global const apslk_parameters* parameters,
                                        __global const float4* accelerations) {
     apslk_free_step step = {(float3)(0.0f), (float3)(0.0f), 0.0f, 0.0f, 1.0f, 1.0f, accelerations};
 #if APSLK_INTEGRATES
-    const apslk_free_part part = free_part(parameters, accelerations);
-    const int parts = max(parameters->small_steps, 1);
+    const int parts = max(parameters->given_small_steps, 1);
+    const apslk_free_part part = one_of_parts(parts, parameters, accelerations);
     float kept = 1.0f, gains = 0.0f, mean_kept = 0.0f, mean_gains = 0.0f;
     for (int k = 0; k < parts; ++k) {
         kept *= part.kept;

@@ -61,7 +61,8 @@ typedef struct {
     float damping;                 // 1/s
     float bending;                 // N·m
     apslk_int bending_iterations;  // evaluations a small step
-    apslk_int padding[13];         // to a power of two, as a pattern that fills a buffer
+    apslk_int given_small_steps;   // before the device raised them: those of the step that nothing limits
+    apslk_int padding[12];         // to a power of two, as a pattern that fills a buffer
 } apslk_parameters;
 
 // Parameters of consecutive cloths, as a kernel argument: below the 1024 bytes that every device takes.

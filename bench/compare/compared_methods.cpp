@@ -43,6 +43,30 @@ ComparedMethod distances(std::string name, std::string title, std::string citati
         .settings = {}};
 }
 
+MethodParameter parameter_of(const methods::ParameterInfo& parameter) {
+    return {.name = parameter.name, .standard = parameter.standard, .least = parameter.least, .sweep = parameter.sweep};
+}
+
+// A baseline as a whole integrator: one sweep a small step, where the others have several.
+ComparedMethod in_small_steps(std::string name, std::string title, const methods::MethodInfo& baseline) {
+    const methods::TetherSettings standard;
+    ComparedMethod method{
+        .name = std::move(name),
+        .title = std::move(title),
+        .citation = baseline.citation,
+        .kind = MethodKind::small_steps,
+        .parameters = {{.name = "small_steps", .standard = standard.steps, .least = 1.0, .sweep = {20, 40, 80}},
+                       {.name = "damping", .standard = standard.damping, .least = 0.0, .sweep = {}}},
+        .settings = {},
+        .baseline = &baseline};
+    for (const methods::ParameterInfo& parameter : baseline.parameters) {
+        method.parameters.push_back(parameter_of(parameter));
+        if (parameter.name == "iterations") method.parameters.back().standard = 1.0;
+        method.parameters.back().sweep.clear();
+    }
+    return method;
+}
+
 std::vector<ComparedMethod> make_compared_methods() {
     const std::string han = "Han 2015";
     std::vector<ComparedMethod> table;
@@ -183,13 +207,12 @@ std::vector<ComparedMethod> make_compared_methods() {
                                 .parameters = {},
                                 .settings = {},
                                 .baseline = &method};
-        for (const methods::ParameterInfo& parameter : method.parameters) {
-            baseline.parameters.push_back({.name = parameter.name,
-                                           .standard = parameter.standard,
-                                           .least = parameter.least,
-                                           .sweep = parameter.sweep});
-        }
+        for (const methods::ParameterInfo& parameter : method.parameters)
+            baseline.parameters.push_back(parameter_of(parameter));
         table.push_back(std::move(baseline));
+        if (method.name == "strain_based_dynamics_strain")
+            table.push_back(
+                in_small_steps("strain_based_dynamics_small_steps", "Strain based dynamics, small steps", method));
     }
     return table;
 }

@@ -15,12 +15,13 @@
 namespace apsl::compare {
 
 enum class MethodKind {
-    none,      ///< the scene's integrator alone
-    springs,   ///< the same with stiffer stretch springs
-    ours,      ///< apsl::StrainLimiter on an OpenCL device
-    direct,    ///< ours on the processor, with a direct solver
-    baseline,  ///< of bench/methods
-    tethers,   ///< methods::TetheredDistances in place of the scene's integrator
+    none,         ///< the scene's integrator alone
+    springs,      ///< the same with stiffer stretch springs
+    ours,         ///< apsl::StrainLimiter on an OpenCL device
+    direct,       ///< ours on the processor, with a direct solver
+    baseline,     ///< of bench/methods
+    tethers,      ///< methods::TetheredDistances in place of the scene's integrator
+    small_steps,  ///< a baseline in small steps in its place
 };
 
 /// A parameter of a method. For ours the name is a path in the scene.
@@ -37,7 +38,7 @@ struct ComparedMethod {
     MethodKind kind = MethodKind::none;
     std::vector<MethodParameter> parameters;
     std::vector<std::pair<std::string, nlohmann::json>> settings;  ///< scene paths that are always set so
-    const methods::MethodInfo* baseline = nullptr;                 ///< of MethodKind::baseline
+    const methods::MethodInfo* baseline = nullptr;                 ///< of MethodKind::baseline and small_steps
 };
 
 /// Ours and all_methods(), in the order of a chart's legend.

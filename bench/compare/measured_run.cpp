@@ -3,7 +3,7 @@
 
 #include "compare/baseline_filter.hpp"
 #include "compare/direct_filter.hpp"
-#include "compare/tethers_step.hpp"
+#include "compare/integrating_step.hpp"
 #include "methods/parameter_values.hpp"
 #include "run/input_error.hpp"
 #include "run/interruption.hpp"
@@ -26,6 +26,20 @@ methods::TetherSettings tether_settings(const PlannedRun& run, const scenes::Sce
             .gravity = Eigen::Vector3d(scene.gravity.data())};
 }
 
+SmallSteps small_steps(const PlannedRun& run, const scenes::Scene& scene) {
+    const ParameterValues& values = run.prepared.parameters;
+    return {.count = methods::whole_number("small_steps", values.at("small_steps").get<double>()),
+            .damping = values.at("damping").get<double>(),
+            .gravity = Eigen::Vector3d(scene.gravity.data())};
+}
+
+std::vector<methods::Parameter> baseline_parameters(const PlannedRun& run) {
+    std::vector<methods::Parameter> parameters;
+    for (const methods::ParameterInfo& parameter : run.method->baseline->parameters)
+        parameters.push_back({parameter.name, run.prepared.parameters.at(parameter.name).get<double>()});
+    return parameters;
+}
+
 scenes::FilterStage make_filter(const PlannedRun& run, const RunConditions& conditions, const scenes::Scene& scene,
                                 const scenes::ClothState& cloth) {
     switch (run.method->kind) {
@@ -39,13 +53,13 @@ scenes::FilterStage make_filter(const PlannedRun& run, const RunConditions& cond
             return make_direct_filter(cloth, scene.strain_limiting.value());
         case MethodKind::tethers:
             return make_tethers_step(tether_settings(run, scene), cloth, scene.time_step);
+        case MethodKind::small_steps:
+            return make_baseline_step(*run.method->baseline, baseline_parameters(run), small_steps(run, scene), cloth,
+                                      scene.time_step);
         case MethodKind::baseline:
             break;
     }
-    std::vector<methods::Parameter> parameters;
-    for (const MethodParameter& parameter : run.method->parameters)
-        parameters.push_back({parameter.name, run.prepared.parameters.at(parameter.name).get<double>()});
-    return make_baseline_filter(*run.method->baseline, parameters, cloth, scene.time_step);
+    return make_baseline_filter(*run.method->baseline, baseline_parameters(run), cloth, scene.time_step);
 }
 
 std::string device_name(scenes::FilterStage& filter) {

@@ -66,7 +66,7 @@ nlohmann::json value_at(const nlohmann::json& document, const std::string& path)
 PreparedScene prepare_scene(const ComparedMethod& method, const nlohmann::json& document, const std::string& file,
                             const ParameterValues& parameters) {
     check_parameters(method, parameters);
-    const bool integrates = method.kind == MethodKind::tethers;
+    const bool integrates = method.kind == MethodKind::tethers || method.kind == MethodKind::small_steps;
     if (integrates && document.contains("colliders") && !document["colliders"].empty())
         throw InputError(file + ": " + method.name + ": expected a scene without colliders");
     if (method.kind != MethodKind::ours && !integrates && takes_whole_steps(document))

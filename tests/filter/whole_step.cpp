@@ -55,6 +55,26 @@ TEST_CASE("a whole step: statistics are of the positions that it leaves", "[filt
     }
 }
 
+TEST_CASE("a whole step: where the limit is the worse one, the step without it stands, in the parts that were given",
+          "[filter][whole_step]") {
+    // The device raises two sub-steps to four for the excess. A pinned edge leaves a triangle no way to shrink but
+    // back.
+    MovingCloth cloth = moving_cloth(right_triangle(), 1);
+    cloth.positions = {0.0, 0.0, 0.0, 0.0, 0.0, 0.1f, 0.0, 0.0, 0.0};
+    cloth.velocities.assign(9, 0.0);
+    cloth.inverse_masses = {0.0, 0.0, 1.0};
+    cloth.rest_areas = {1.0};
+    Parameters parameters = falling(2, 1.1f);
+    parameters.time_step = 0.1f;
+    parameters.acceleration = {0.0f, 1000.0f, -1.0f};
+    parameters.damping = 0.0f;
+    const auto& [got, want] = check_step_against_reference(cloth, with_ceiling, parameters);
+    REQUIRE(got.stats.sub_steps > parameters.sub_steps);
+    CHECK(got.positions[7] == Approx(10.0));  // one part: Δt² g
+    const double area = reference::areas<double>(*cloth.topology, got.positions)[0];
+    CHECK(static_cast<double>(got.stats.max_area_change) == Approx(std::abs(area - 1.0)).epsilon(1e-4));
+}
+
 TEST_CASE("a whole step: what is free falls as symplectic Euler in its parts, and a pin keeps its velocity",
           "[filter][whole_step]") {
     MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);

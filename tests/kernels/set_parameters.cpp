@@ -13,7 +13,7 @@ TEST_CASE("set_parameters: writes the given entries of the block, and no others"
         const float x = static_cast<float>(n);
         block.entry[n] = {0.1f + x, 10.0f - x, 1.0f + x, 0.01f * x, 1e-4f * x, n,       100 + n,
                           200 + n,  300 + n,   1,        n % 2,     1.0f + x,  400 + n, {x, 1.0f + x, 2.0f + x},
-                          0.5f * x, 1e-3f * x, 1 + n,    {}};
+                          0.5f * x, 1e-3f * x, 1 + n,    500 + n,   {}};
     }
     for (const std::uint32_t group : work_group_sizes())
         for (const auto& [first, count] : {std::pair{0u, 1u}, {5u, 3u}, {6u, std::uint32_t{APSLK_PARAMETER_BLOCK}}}) {

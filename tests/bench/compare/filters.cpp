@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "compare/baseline_filter.hpp"
 #include "compare/direct_filter.hpp"
-#include "compare/tethers_step.hpp"
+#include "compare/integrating_step.hpp"
 #include "pipeline/measures.hpp"
 #include "run/reference_filter.hpp"
 
+#include <apsl/error.hpp>
+
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -73,6 +76,42 @@ TEST_CASE("a step of tethers is left out where numbers are not finite") {
     const std::vector<double> before = cloth.positions;
     CHECK(make_tethers_step({}, cloth, 0.1).step(cloth).status == Status::diverged);
     CHECK(cloth.positions == before);
+}
+
+TEST_CASE("a baseline in small steps moves positions and velocities of free vertices") {
+    const auto all = methods::all_methods();
+    const auto found =
+        std::find_if(all.begin(), all.end(), [](const auto& method) { return method.name == "pbd_edges"; });
+    REQUIRE(found != all.end());
+    scenes::ClothState cloth = square();
+    cloth.velocities[1] = 0.25;  // of the pinned vertex
+    const scenes::ClothState before = cloth;
+    const methods::Parameter once{"iterations", 1.0};
+    const scenes::CustomStep step = make_baseline_step(*found, {&once, 1}, {.count = 20}, cloth, 0.1);
+    CHECK(step.step(cloth).status == Status::ok);
+    CHECK(cloth.positions[1] == 0.1 * 0.25);
+    CHECK(cloth.velocities[1] == 0.25);
+    CHECK(scenes::edge_stretch(cloth).max < 1.05);  // torn apart it would be 1.2
+    CHECK(cloth.velocities[3] < before.velocities[3]);
+    cloth.velocities[3] = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double> stands = cloth.positions;
+    CHECK(step.step(cloth).status == Status::diverged);
+    CHECK(cloth.positions == stands);
+    CHECK_THROWS_AS(make_baseline_step(*found, {}, {.count = 0}, cloth, 0.1), Error);
+}
+
+TEST_CASE("small steps fall freely, whatever their number") {
+    const methods::MethodInfo& method = methods::all_methods()[0];
+    for (const int count : {1, 10, 100}) {
+        scenes::ClothState cloth = square();
+        for (double& w : cloth.inverse_masses) w = 1.0;
+        std::fill(cloth.velocities.begin(), cloth.velocities.end(), 0.0);
+        const scenes::ClothState before = cloth;
+        const SmallSteps steps{.count = count, .damping = 0.0, .gravity = {0.0, -10.0, 0.0}};
+        REQUIRE(make_baseline_step(method, {}, steps, cloth, 0.1).step(cloth).status == Status::ok);
+        CHECK(cloth.velocities[4] == Approx(-1.0).epsilon(1e-3));
+        CHECK(cloth.positions[4] - before.positions[4] == Approx(-0.05 * (count + 1) / count).epsilon(1e-4));
+    }
 }
 
 TEST_CASE("direct solves end where tight Conjugate Gradient ends") {
