@@ -79,7 +79,7 @@ void require_reserved_zero(const Struct& given, const char* name) {
         if (word != 0)
             throw apsl::Error(apsl::ErrorCode::invalid_argument,
                               std::string(name) + ".reserved holds " + std::to_string(word) +
-                                  ", expected zeros: begin with apsl_limiter_default_" + name + "()");
+                                  ", expected zeros: begin with apsl_default_" + name + "()");
 }
 
 std::span<const cl_event> events(cl_uint wait_count, const cl_event* wait_list) {

@@ -95,7 +95,10 @@ void CommandSequence::launch(const Kernel& kernel, std::uint32_t groups, std::ui
 cl_event CommandSequence::end() {
     if (previous_) return previous_.give_up();
     cl_event event = nullptr;
-    check(clEnqueueMarkerWithWaitList(queue_, 0, nullptr, &event), "queueing the end of the call");
+    // Where nothing was queued, the end is that of what there was to wait for.
+    check(clEnqueueMarkerWithWaitList(queue_, static_cast<cl_uint>(wait_list_.size()),
+                                      wait_list_.empty() ? nullptr : wait_list_.data(), &event),
+          "queueing the end of the call");
     return event;
 }
 

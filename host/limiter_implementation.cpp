@@ -298,6 +298,10 @@ cl_event StrainLimiter::Implementation::enqueue_rest_hinges(cl_command_queue que
                                                             const BufferView& hinges,
                                                             std::span<const cl_event> wait_list) {
     if (!options.bends) invalid("rest hinges are asked for, but Options::bends is off");
+    if (caller_counts.hinges == 0) {
+        check_queue(queue, wait_list, context, device);
+        return CommandSequence(queue, wait_list, nullptr).end();
+    }
     return enqueue_rest(
         queue, rest_positions, hinges, 2 * caller_counts.hinges, "rest_hinges", wait_list,
         [&]() -> auto& { return arguments::rest_hinges(kernels.rest_hinges, arrays, rest_positions, hinges); });

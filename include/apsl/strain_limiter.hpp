@@ -54,7 +54,8 @@ struct Buffers {
     BufferView contacts = {};
     /// 2 floats a hinge, [H]: the angle between its triangles at rest, rad, and l²/(A₀ + A₁), l the length of its edge
     /// and A₀, A₁ the areas of its triangles at rest; a second number of 0 leaves a hinge free, a smaller one makes it
-    /// softer. Hinges in the order of Topology::hinges. Only with Options::bends; see enqueue_rest_hinges.
+    /// softer. Hinges in the order of Topology::hinges; none is needed where there is no hinge. Only with
+    /// Options::bends; see enqueue_rest_hinges.
     BufferView rest_hinges = {};
     /// m/s², [V], laid out as Options say of positions: what a vertex that is not pinned is accelerated by, beside
     /// Parameters::acceleration. Of a force f, N, on vertex i: f wᵢ. Only with Options::acceleration_per_vertex.
@@ -159,8 +160,8 @@ public:
     [[nodiscard]] cl_event enqueue_rest_shapes(cl_command_queue queue, const BufferView& rest_positions,
                                                const BufferView& rest_shapes, std::span<const cl_event> wait_list = {});
 
-    /// Queues Buffers::rest_hinges of all hinges at `rest_positions` likewise: 2 floats a hinge, [H]. Zeros where a
-    /// triangle of the hinge has no area. Only with Options::bends.
+    /// Queues Buffers::rest_hinges of all hinges at `rest_positions` likewise: 2 floats a hinge, [H], and nothing where
+    /// there is no hinge. Zeros where a triangle of the hinge has no area. Only with Options::bends.
     [[nodiscard]] cl_event enqueue_rest_hinges(cl_command_queue queue, const BufferView& rest_positions,
                                                const BufferView& rest_hinges, std::span<const cl_event> wait_list = {});
 

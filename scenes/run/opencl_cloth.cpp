@@ -70,7 +70,7 @@ OpenClCloth::OpenClCloth(const OpenClDevice& device, const ClothState& cloth, co
     rest_areas_ = make_buffer(to_float(cloth.rest_areas), "rest areas");
     if (!settings.regularization.empty()) regularization_ = make_buffer(settings.regularization, "regularization");
     if (settings.options.limits_stretch) rest_shapes_ = make_buffer(to_float(rest_shapes(cloth)), "rest shapes");
-    if (settings.options.bends)
+    if (settings.options.bends && cloth.topology->hinge_count() > 0)
         rest_hinges_ =
             make_buffer(to_float(reference::rest_hinges<double>(*cloth.topology, cloth.rest_positions)), "rest hinges");
     if (!settings.stretch_ceilings.empty())

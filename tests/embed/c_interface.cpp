@@ -322,7 +322,9 @@ TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {
     CHECK(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &options, &limiter) ==
           APSL_ERROR_INVALID_ARGUMENT);
     CHECK(limiter == nullptr);
-    CHECK(std::string(apsl_last_error()).find("options.reserved holds 5, expected zeros") != std::string::npos);
+    CHECK(std::string(apsl_last_error())
+              .find("options.reserved holds 5, expected zeros: begin with apsl_default_options()") !=
+          std::string::npos);
 
     REQUIRE(apsl_limiter_create(device().context, device().id, &topology.topology, 1, nullptr, &limiter) ==
             APSL_SUCCESS);
@@ -333,6 +335,8 @@ TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {
     parameters.reserved[0] = 1;
     CHECK(apsl_limiter_enqueue(limiter, queue.get(), &views, &parameters, 1, 0, nullptr, nullptr) ==
           APSL_ERROR_INVALID_ARGUMENT);
-    CHECK(std::string(apsl_last_error()).find("parameters.reserved holds 1") != std::string::npos);
+    CHECK(std::string(apsl_last_error())
+              .find("parameters.reserved holds 1, expected zeros: begin with apsl_default_parameters()") !=
+          std::string::npos);
     apsl_limiter_destroy(limiter);
 }

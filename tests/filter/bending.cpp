@@ -117,6 +117,34 @@ TEST_CASE("bending: a clamped strip hangs as far whatever the steps", "[filter][
     }
 }
 
+TEST_CASE("bending: a mesh without hinges has nothing to bend, and needs no buffer of them", "[filter][bending]") {
+    const MovingCloth cloth = moving_cloth(right_triangle(), 1);
+    REQUIRE(cloth.rest_hinges.empty());
+    Options unbending = bending;
+    unbending.bends = false;
+    const Parameters parameters = falling(6, 0.5f, 3);
+    StrainLimiter limiter(device().context, device().id, cloth.topology, bending);
+    const CallerBuffers buffers({&cloth, 1}, bending);
+    const Owned<cl_command_queue> queue = in_order_queue();
+    cl_int status = CL_SUCCESS;
+    const Owned<cl_event> gate(clCreateUserEvent(device().context, &status), clReleaseEvent);
+    require_success(status, "a gate");
+    const cl_event held = gate.get();
+    const cl_event rest = limiter.enqueue_rest_hinges(queue.get(), buffers.views().positions, {}, {&held, 1});
+    cl_int state = CL_COMPLETE;
+    require_success(clGetEventInfo(rest, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, nullptr), "status");
+    CHECK(state != CL_COMPLETE);  // it waits for what it was told to
+    require_success(clSetUserEventStatus(gate.get(), CL_COMPLETE), "opening the gate");
+    require_success(wait_and_release(rest), "rest hinges");
+
+    Buffers views = buffers.views();
+    views.rest_hinges = {};
+    require_success(wait_and_release(limiter.enqueue(queue.get(), views, parameters)), "the step");
+    const std::vector<float> got = buffers.read_positions();
+    CHECK(std::vector<double>(got.begin(), got.end()) ==
+          step_on_device(cloth, unbending, falling(6, 0.0f, 3)).positions);
+}
+
 TEST_CASE("bending: rest hinges from rest positions, of the device's own", "[filter][bending]") {
     const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::random), 1);
     StrainLimiter limiter(device().context, device().id, cloth.topology, bending);

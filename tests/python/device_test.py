@@ -112,6 +112,15 @@ class Same(unittest.TestCase):
         self.assertLess(made.read_stats(QUEUE).max_area_change, 1e-5)
         np.testing.assert_allclose(stretched.get(), CORNER, atol=1e-4)
 
+    def test_a_mesh_without_hinges_needs_none(self):
+        made = on_device(ONE_TRIANGLE, 3, integrates=True, limits_stretch=True, bends=True)
+        shapes = array(apsl.rest_shapes(CORNER, ONE_TRIANGLE))
+        for hinges in ({}, {"rest_hinges": None}, {"rest_hinges": np.zeros((0, 2), np.float32)}):
+            stretched = array(CORNER * [1.5, 1, 1])
+            made.enqueue(QUEUE, stretched, array(np.zeros((3, 3))), array([0, 2, 0]), array([0.5]), rest_shapes=shapes,
+                         stretch_ceiling=1.1, bending=1e-3, **hinges)
+            self.assertLess(made.read_stats(QUEUE).max_area_change, 0.1)
+
     def test_an_array_for_each_triangle_and_whole_steps(self):
         cloth, count = self.cloth, len(self.cloth.triangles)
         options = {"limits_stretch": True, "stretch_ceiling_per_triangle": True, "integrates": True,

@@ -3,6 +3,7 @@
 #include "run/filter_stage.hpp"
 #include "run/parse_scene.hpp"
 #include "run/simulation.hpp"
+#include "scenes/sample_files.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -56,6 +57,20 @@ double greatest_difference(const std::vector<double>& a, const std::vector<doubl
 }
 
 }  // namespace
+
+TEST_CASE("stand-alone: a mesh without hinges has nothing to bend") {
+    const test::TemporaryFolder folder;
+    const std::string mesh = folder.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const auto bent = [&](const std::string& bending) {
+        return run(
+            parse_scene(nlohmann::json::parse(R"({"mesh": {"file": ")" + mesh + R"("}, "pins": [{"vertices": [0]}],
+            "integrator": {"stand_alone": {"bending": )" +
+                                              bending + R"(}}, "strain_limiting": {"stretch_ceiling": 1.1}})"),
+                        "scene.json"),
+            Backend::opencl, 3);
+    };
+    CHECK(bent("1e-3").cloth.positions == bent("0").cloth.positions);
+}
 
 TEST_CASE("stand-alone: the device does what the reference does, pins that move included") {
     for (const std::string& pins : {corners, led}) {

@@ -104,6 +104,9 @@ class StrainLimiter:
         if options["positions_only"] and velocities is None:
             del given["velocities"]
         settings: dict[str, Any] = {**parameters}
+        if options["bends"] and made.hinge_count == 0:
+            settings.pop("rest_hinges", None)  # of no hinges: there is no buffer of no size
+            options = {**options, "bends": False}
         _check_arrays("enqueue", options, settings)
         for name, option in _optional_arrays.items():
             if options[option]:
