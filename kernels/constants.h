@@ -31,6 +31,8 @@
 #define APSLK_EXCESS_TAKEN 0.6f
 // Of |∇C|²: what a row demands beyond its triangle's area row is noise below.
 #define APSLK_LEAST_ROW_SHARE 1e-6f
+// Of |∇C|² too: a row is weak below, and asked for less than it demands.
+#define APSLK_WEAK_ROW_SHARE 0.1f
 // Sub-steps that follow the need (Parameters::most_sub_steps). The excess that a whole step may make for each of them,
 #define APSLK_EXCESS_A_SUB_STEP 0.23f
 // the ratio of the greatest effective mass to the one given that they aim at: K h²/m grows with it,

@@ -45,6 +45,14 @@ APSLK_INLINE lanes next_held_excess(lanes held, lanes excess, lanes start, int s
     return fmax(exp(-APSLK_EXCESS_LEAD * part) * held, fmin(could_not, start));
 }
 
+// What a row is asked for of its demand `value`, where of its |∇C|² `size` this much is `left` beyond the area row: all
+// of it, or, of a weak row, less. Where next to nothing is left no motion brings the triangle below its ceiling and
+// keeps its area, and the one that is asked for goes far, to the side.
+APSLK_INLINE lanes asked_of_row(lanes value, lanes left, lanes size) {
+    const lanes share = fmin(left / (APSLK_WEAK_ROW_SHARE * size), 1.0f);
+    return fmin(value, share * share * value);
+}
+
 // `stretch`: of the triangles now. What takes no part is zero. `area_excess`: the area row's right-hand side.
 // `ceiling`: for this sub-step. Corner by corner, not as a loop: where LLVM unrolls one, it leaves an intrinsic that
 // Oclgrind does not have.
@@ -66,7 +74,8 @@ APSLK_INLINE apslk_stretch_row stretch_row(apslk_triangle_geometry t, apslk_rest
     const lanes4 g2 = combined(l2, stretch.spatial, -share, a2);
     const lanes left = 0.5f * (t.inverse_mass[0] * squared_length(g0) + t.inverse_mass[1] * squared_length(g1) +
                                t.inverse_mass[2] * squared_length(g2));
-    const lanes value = APSLK_EXCESS_TAKEN * (rest_area * (stretch.value - ceiling) - share * area_excess);
+    const lanes value =
+        asked_of_row(APSLK_EXCESS_TAKEN * (rest_area * (stretch.value - ceiling) - share * area_excess), left, size);
     const lanes_int part =
         shape.ceiling > 0.0f && stretch.value > ceiling - APSLK_STRETCH_MARGIN && left > APSLK_LEAST_ROW_SHARE * size;
     apslk_stretch_row row;

@@ -125,10 +125,10 @@ ConstraintRow<Real> StretchLimiting<Real>::limited_row(std::size_t a, std::span<
     const std::array<Real, 3> w{inverse_masses_[triangle[0]], inverse_masses_[triangle[1]],
                                 inverse_masses_[triangle[2]]};
     ConstraintRow<Real> limited = orthogonalized(row, area, w);
-    if (!(weighted_product(limited, limited, w) > Real(least_row_share) * weighted_product(row, row, w)))
-        return no_row<Real>();
+    const Real left = weighted_product(limited, limited, w), size = weighted_product(row, row, w);
+    if (!(left > Real(least_row_share) * size)) return no_row<Real>();
     share_[a] = share_of_other(row, area, w);
-    limited.value *= Real(excess_taken);
+    limited.value = asked_of_row(Real(excess_taken) * limited.value, left, size);
     return limited;
 }
 

@@ -5,7 +5,10 @@
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
 
+#include "../../kernels/constants.h"
+
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -76,6 +79,15 @@ Real weighted_product(const ConstraintRow<Real>& a, const ConstraintRow<Real>& b
 template <class Real>
 ConstraintRow<Real> orthogonalized(const ConstraintRow<Real>& row, const ConstraintRow<Real>& other,
                                    const std::array<Real, 3>& inverse_masses);
+
+/// What an orthogonalized row is asked for of the `value` that it demands, where of its |∇C|² `size` this much is
+/// `left`: all of it, or, of a weak row, less. Where next to nothing is left no motion brings the triangle below its
+/// ceiling and keeps its area, and the one that is asked for goes far, to the side.
+template <class Real>
+Real asked_of_row(Real value, Real left, Real size) {
+    const Real share = std::min(left / (Real(APSLK_WEAK_ROW_SHARE) * size), Real(1));
+    return std::min(value, share * share * value);
+}
 
 /// Conditions J Δx = −b on the coordinates of all vertices. A row is divided by √D, D = Σ_k w_k |∇C_k|², so that
 /// J W Jᵀ has ones on its diagonal; a row with D = 0 is zero. With J W Jᵀ y = b the displacement is Δx = −W Jᵀ y and

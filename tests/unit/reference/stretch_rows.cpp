@@ -184,6 +184,16 @@ TEST_CASE("orthogonalized row: at right angles to the area row, and an exact cha
     CHECK(std::abs(y[2]) > 1e-3);
 }
 
+TEST_CASE("orthogonalized row: a weak one is asked for less of what it demands, never for less slack",
+          "[stretch_rows]") {
+    CHECK(asked_of_row(0.3, 0.5, 1.0) == 0.3);
+    CHECK(asked_of_row(0.3, 0.2, 2.0) == Approx(0.3));  // a tenth: the least that is not weak
+    CHECK(asked_of_row(0.3, 0.1, 2.0) == Approx(0.075));
+    CHECK(asked_of_row(0.3, 0.02, 2.0) == Approx(0.003));
+    CHECK(asked_of_row(0.3, 0.0, 2.0) == 0.0);
+    CHECK(asked_of_row(-0.3, 0.02, 2.0) == -0.3);
+}
+
 TEST_CASE("row system: ones on the diagonal, and no eigenvalue above the bound", "[stretch_rows]") {
     for (const test::SampleCloth& cloth : test::wavy_cloths()) {
         CAPTURE(cloth.name);
