@@ -102,8 +102,15 @@ std::optional<bool> holds_without_bending(const Tuning& tuning, Document documen
 }
 
 // What the tuned scene could do without, by trying: a line each. False where it was interrupted.
+// Without springs and the limiter there is gravity alone, which meets a target where nothing holds the cloth.
+bool has_springs(const Scene& scene) {
+    return std::holds_alternative<ImplicitSpringsIntegrator>(scene.integrator) ||
+           std::holds_alternative<BendingSpringsIntegrator>(scene.integrator);
+}
+
 bool tell_what_can_go(const Tuning& tuning, const Document& tuned, const Trial& best, bool limiter_needed) {
-    if (!limiter_needed) std::fprintf(tuning.stream, "could go: strain_limiting, the springs alone meet the target\n");
+    if (!limiter_needed && has_springs(tuning.scene))
+        std::fprintf(tuning.stream, "could go: strain_limiting, the springs alone meet the target\n");
     const auto* springs = std::get_if<ImplicitSpringsIntegrator>(&tuning.scene.integrator);
     if (springs != nullptr && springs->bend_stiffness > 0.0) {
         const std::optional<bool> holds = holds_without_bending(tuning, tuned);
