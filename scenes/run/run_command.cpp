@@ -11,6 +11,7 @@
 #include "run/summary.hpp"
 #include "run/whole_file.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -38,8 +39,9 @@ void add_settings_warning(const Scene& scene, std::vector<std::string>& warnings
                            ": integrator.stand_alone: areas alone do not hold a cloth together, which flows; give "
                            "strain_limiting a stretch_ceiling, 1.1 suits most");
     }
-    if (settings.options.matrix == Matrix::printed && settings.regularization.empty() &&
-        settings.parameters.regularization < 2.0f) {
+    const float least_regularization = settings.regularization.empty() ? settings.parameters.regularization
+                                                                       : std::ranges::min(settings.regularization);
+    if (settings.options.matrix == Matrix::printed && least_regularization < 2.0f) {
         warnings.push_back(
             scene.file +
             ": strain_limiting: sub-steps with the printed matrix diverge for a regularization below 2; use 2 or "

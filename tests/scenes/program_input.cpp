@@ -83,6 +83,17 @@ TEST_CASE("lists of values that do not fit the mesh are refused in one line") {
                       "strain_limiting.stretch_ceiling: expected one number or one for each of 32 triangles, got 2");
 }
 
+TEST_CASE("a list without a stretch ceiling takes no more than a stretch ceiling of 0") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("bends.json", R"({"mesh": {"grid": {"vertices": [2, 2]}}, "frames": 1,
+            "integrator": {"stand_alone": {"bending": 1e-4}}, "strain_limiting": {}})");
+    const std::string refused = "integrator: stand_alone: bends is on, which needs limits_stretch";
+    for (const char* ceiling : {"0", "[0,0]"})
+        check_refused("run " + scene + " --set strain_limiting.stretch_ceiling=" + ceiling, refused);
+    check_refused("run " + scene + " --set strain_limiting.stretch_ceiling=[0,0,0] --set integrator.stand_alone={}",
+                  "strain_limiting.stretch_ceiling: expected one number or one for each of 2 triangles, got 3");
+}
+
 TEST_CASE("a device that is not there is refused in one line") {
     const std::string curtain = "run --frames 1 " + scene_path("curtain.json");
     check_refused(curtain + " --device 99", "--device 99: no such device, expected 0 to");
