@@ -3,6 +3,7 @@
 #include "run/flat_cloth.hpp"
 #include "run/frame_output.hpp"
 #include "run/input_error.hpp"
+#include "run/input_files.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
 #include "run/progress.hpp"
@@ -120,6 +121,10 @@ int run_command(const RunOptions& options) {
     const Pieces pieces = cloth.pieces;
     const LightVertices light = cloth.light;
     const CapTriangles caps = cloth.caps;
+    const std::vector<InputFile> inputs = input_files(scene);
+    if (options.out) check_no_input_in(*options.out, inputs);
+    if (options.report) check_not_an_input(*options.report, inputs);
+    if (options.out && options.report) check_report_apart(*options.report, *options.out);
     std::optional<OpenClDevice> device;
     if (scene.strain_limiting && options.backend == Backend::opencl) device = choose_opencl_device(options.device);
     if (options.out) make_writable_folder(*options.out);
