@@ -37,6 +37,8 @@ TEST_CASE("wrong usage is refused in one line") {
     check_refused("run " + scene_path("curtain.json") + " --set frames", "--set frames: expected path=value");
     check_refused("run " + scene_path("curtain.json") + " --set strain_limiting.alpha=1.1",
                   "strain_limiting.alpha: unknown key");
+    check_refused("validate " + scene_path("curtain.json") + " --set pins[0]=null",
+                  "pins[0]: expected an object, got null");
 }
 
 TEST_CASE("wrong scenes are refused in one line, by run and by validate") {
