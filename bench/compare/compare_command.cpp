@@ -222,7 +222,7 @@ int compare_command(const CompareOptions& options) {
         if (!measured || scenes::interrupted()) {
             std::fprintf(stderr, "interrupted before run %zu of %zu was done; the runs before it are in %s\n", number,
                          count, options.out.string().c_str());
-            return scenes::exit_interrupted;
+            return scenes::exit_code_of_interruption();
         }
         tell(number, count, run, results.add(run, *measured, conditions, deviation, on_device));
         results.write();

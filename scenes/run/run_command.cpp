@@ -148,7 +148,7 @@ int run_command(const RunOptions& options) {
     if (!complete && !report.breakdown) {
         std::fprintf(stderr, "interrupted after %zu of %d frames; no report is written\n", report.frames.size(),
                      scene.frames);
-        return exit_interrupted;
+        return exit_code_of_interruption();
     }
     if (OpenClCloth* on = on_device(simulation.filter()); on != nullptr && options.profile)
         add_kernel_times(*on, report);

@@ -198,7 +198,7 @@ bool names_a_solver(const Document& document) {
 
 int interruption() {
     std::fprintf(stderr, "interrupted; no scene is written\n");
-    return exit_interrupted;
+    return exit_code_of_interruption();
 }
 
 }  // namespace

@@ -215,6 +215,28 @@ TEST_CASE("an interrupted run says so and leaves nothing that names itself whole
     }
 }
 
+TEST_CASE("an interrupted run exits with what shells have for its signal") {
+    const auto [signal, code] = GENERATE(table<std::string, int>({{"INT", 130}, {"TERM", 143}}));
+    CAPTURE(signal);
+    // With its status preserved `timeout` passes on the program's own exit code.
+    const ProgramRun run = run_apsl("run " + scene_path("curtain_unfiltered.json") + " --frames 1000000",
+                                    "timeout --foreground --preserve-status --signal=" + signal + " 2");
+    CHECK(run.exit_code == code);
+    CHECK_THAT(run.errors, Catch::Contains("interrupted after "));
+}
+
+TEST_CASE("output that cannot be written is an error, whatever the command") {
+    const std::string curtain = scene_path("curtain_unfiltered.json");
+    for (const std::string& arguments : {"run " + curtain + " --frames 1", "validate " + curtain,
+                                         std::string("devices"), std::string("--help"), std::string("--version")}) {
+        CAPTURE(arguments);
+        // In a shell of its own, within which the redirection of run_apsl() does not reach.
+        const ProgramRun run = run_apsl(arguments + " >/dev/full)", "(");
+        CHECK(run.exit_code == 2);
+        CHECK_THAT(run.errors, Catch::EndsWith("error: standard output: writing failed, is the disk full?\n"));
+    }
+}
+
 TEST_CASE("a simulation that breaks down exits with 1 and a report that says where") {
     const TemporaryFolder folder;
     const std::string report_file = (folder.path() / "report.json").string();
