@@ -121,6 +121,7 @@ int run_command(const RunOptions& options) {
     const Pieces pieces = cloth.pieces;
     const LightVertices light = cloth.light;
     const CapTriangles caps = cloth.caps;
+    const NeedleTriangles needles = cloth.needles;
     const std::vector<InputFile> inputs = input_files(scene);
     if (options.out) check_no_input_in(*options.out, inputs);
     if (options.report) check_not_an_input(*options.report, inputs);
@@ -142,6 +143,7 @@ int run_command(const RunOptions& options) {
     report.pieces = pieces;
     report.light = light;
     report.caps = caps;
+    report.needles = needles;
     report.stand_alone = scene.strain_limiting && scene.strain_limiting->options.integrates;
     report.limits_stretch = scene.strain_limiting && scene.strain_limiting->options.limits_stretch;
     const bool complete = simulate(simulation, scene.frames, output, report);
