@@ -5,6 +5,7 @@
 #include "compare/study.hpp"
 #include "run/commands.hpp"
 #include "run/input_error.hpp"
+#include "run/input_files.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
 #include "run/progress.hpp"
@@ -125,6 +126,22 @@ void tell(std::size_t number, std::size_t count, const PlannedRun& run, const nl
                  entry["status"].get<std::string>().c_str());
 }
 
+std::filesystem::path converged_file(const std::filesystem::path& out, const SceneCase& scene) {
+    std::filesystem::path file = out;
+    return file.replace_extension("." + scene.name + ".converged.json");
+}
+
+// Throws InputError where the results or a converged solution would take the place of what the study reads.
+void check_outputs(const Study& study, const CompareOptions& options) {
+    std::vector<scenes::InputFile> inputs;
+    if (options.study) inputs.push_back({"the study", *options.study});
+    for (const SceneCase& scene : study.scenes)
+        for (scenes::InputFile& input : scenes::input_files(scenes::parse_scene(scene.document, scene.file)))
+            inputs.push_back(std::move(input));
+    scenes::check_not_an_input(options.out, inputs);
+    for (const SceneCase& scene : study.scenes) scenes::check_not_an_input(converged_file(options.out, scene), inputs);
+}
+
 // The converged solutions by scene, made when the first run needs one.
 class Converged {
 public:
@@ -133,10 +150,8 @@ public:
     /// Null where the run was interrupted.
     const ConvergedSolution* of(const SceneCase& scene, const DeviationPlan& plan) {
         if (scene_ == &scene) return &*solution_;
-        std::filesystem::path cache = out_;
-        cache.replace_extension("." + scene.name + ".converged.json");
         std::fprintf(stderr, "%s: converged solution\n", scene.name.c_str());
-        solution_ = converged_solution(scene, plan.settings, plan.frames, cache);
+        solution_ = converged_solution(scene, plan.settings, plan.frames, converged_file(out_, scene));
         scene_ = solution_ ? &scene : nullptr;
         return solution_ ? &*solution_ : nullptr;
     }
@@ -160,6 +175,7 @@ std::optional<double> device_seconds(const PlannedRun& run, RunConditions condit
 
 int compare_command(const CompareOptions& options) {
     const Study study = assemble_study(options);
+    check_outputs(study, options);
     const std::vector<PlannedRun> runs = plan_runs(study);
     RunConditions conditions{.device = {}, .converged = nullptr, .show = {}};
     if (std::any_of(runs.begin(), runs.end(),
@@ -206,7 +222,7 @@ int compare_command(const CompareOptions& options) {
         if (!measured || scenes::interrupted()) {
             std::fprintf(stderr, "interrupted before run %zu of %zu was done; the runs before it are in %s\n", number,
                          count, options.out.string().c_str());
-            return scenes::exit_interrupted;
+            return scenes::exit_code_of_interruption();
         }
         tell(number, count, run, results.add(run, *measured, conditions, deviation, on_device));
         results.write();

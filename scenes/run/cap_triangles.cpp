@@ -10,7 +10,7 @@
 namespace apsl::scenes {
 namespace {
 
-// Of the longest edge. With a shorter edge the triangle is a needle, whose light vertices are told of.
+// Of the longest edge. A triangle with a shorter edge is rather a needle, which is told of apart.
 constexpr double short_edge = 0.1;
 
 std::array<double, 3> sorted_edges(const ClothState& cloth, const Triangle& triangle) {

@@ -10,10 +10,10 @@
 
 namespace apsl::scenes {
 
+// Of an interrupted command it is exit_code_of_interruption().
 inline constexpr int exit_done = 0;
-inline constexpr int exit_broke_down = 1;     ///< the simulation; the report says where
-inline constexpr int exit_wrong_input = 2;    ///< usage, scene, mesh, device or output place; one line on stderr
-inline constexpr int exit_interrupted = 130;  ///< by Ctrl-C, as shells have it
+inline constexpr int exit_broke_down = 1;   ///< the simulation; the report says where
+inline constexpr int exit_wrong_input = 2;  ///< usage, scene, mesh, device or output place; one line on stderr
 
 struct RunOptions {
     std::filesystem::path scene;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "run/frame_output.hpp"
 
+#include "run/input_error.hpp"
 #include "run/vtp_writer.hpp"
+#include "run/whole_file.hpp"
 
 #include <string>
 #include <system_error>
@@ -43,6 +45,25 @@ void FrameOutput::add_frame(const ClothState& cloth, std::span<const double> are
 void FrameOutput::finish() {
     write_pvd(folder_ / "cloth.pvd", frames_, seconds_per_frame_);
     point_cache_.commit();
+}
+
+void check_no_input_in(const std::filesystem::path& folder, std::span<const InputFile> inputs) {
+    if (!std::filesystem::is_directory(folder)) return;
+    const std::string partial = partial_file("").string();
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        std::string name = entry.path().filename().string();
+        if (name.ends_with(partial)) name.resize(name.size() - partial.size());
+        if (is_ours(name)) check_not_an_input(folder / name, inputs);
+    }
+}
+
+void check_report_apart(const std::filesystem::path& report, const std::filesystem::path& folder) {
+    const std::string name = report.filename().string();
+    std::error_code not_there;
+    if (is_ours(name) && name != "report.json" &&
+        std::filesystem::equivalent(std::filesystem::absolute(report).parent_path(), folder, not_there))
+        throw InputError(report.string() + ": the report would overwrite what the run leaves in " + folder.string() +
+                         ", expected another name");
 }
 
 }  // namespace apsl::scenes

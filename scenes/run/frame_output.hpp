@@ -2,6 +2,7 @@
 #pragma once
 
 #include "run/blender_writer.hpp"
+#include "run/input_files.hpp"
 
 #include <filesystem>
 #include <span>
@@ -24,5 +25,11 @@ private:
     int frames_ = 0;
     PointCache point_cache_;
 };
+
+/// Throws InputError where FrameOutput and the report beside it would take out or overwrite an input in `folder`.
+void check_no_input_in(const std::filesystem::path& folder, std::span<const InputFile> inputs);
+
+/// Throws InputError where a report at `report` would take the place of one of FrameOutput's files in `folder`.
+void check_report_apart(const std::filesystem::path& report, const std::filesystem::path& folder);
 
 }  // namespace apsl::scenes

@@ -8,8 +8,8 @@ namespace {
 
 volatile std::sig_atomic_t noted = 0;
 
-void note(int) {
-    noted = 1;
+void note(int signal) {
+    noted = signal;
 }
 
 }  // namespace
@@ -24,6 +24,10 @@ void note_interruptions() {
 
 bool interrupted() {
     return noted != 0;
+}
+
+int exit_code_of_interruption() {
+    return 128 + static_cast<int>(noted);
 }
 
 }  // namespace apsl::scenes

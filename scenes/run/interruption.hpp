@@ -9,4 +9,7 @@ void note_interruptions();
 /// Whether one has been noted.
 bool interrupted();
 
+/// What shells have for a program that the noted signal ended: 130 of Ctrl-C, 143 of SIGTERM.
+int exit_code_of_interruption();
+
 }  // namespace apsl::scenes

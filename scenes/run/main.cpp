@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <new>
 #include <sstream>
@@ -122,9 +123,7 @@ int parse_and_run(int argument_count, char** arguments) {
     return devices_command();
 }
 
-}  // namespace
-
-int main(int argument_count, char** arguments) {
+int run_reporting_errors(int argument_count, char** arguments) {
     try {
         return parse_and_run(argument_count, arguments);
     } catch (const InputError& error) {
@@ -136,4 +135,15 @@ int main(int argument_count, char** arguments) {
     } catch (const std::exception& error) {
         return wrong_input(error.what());
     }
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+    const int code = run_reporting_errors(argument_count, arguments);
+    // What is lost there must not pass for done. What CLI11 writes goes through std::cout.
+    const bool written = std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    if (written) return code;
+    const int lost = wrong_input("standard output: writing failed, is the disk full?");
+    return code == exit_done ? lost : code;
 }

@@ -73,7 +73,7 @@ OpenClCloth::OpenClCloth(const OpenClDevice& device, const ClothState& cloth, co
     if (settings.options.bends && cloth.topology->hinge_count() > 0)
         rest_hinges_ =
             make_buffer(to_float(reference::rest_hinges<double>(*cloth.topology, cloth.rest_positions)), "rest hinges");
-    if (!settings.stretch_ceilings.empty())
+    if (settings.options.stretch_ceiling_per_triangle)
         stretch_ceilings_ = make_buffer(settings.stretch_ceilings, "stretch ceilings");
     limiter_.set_profiling(profile);
 }

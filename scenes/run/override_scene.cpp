@@ -87,11 +87,8 @@ void override_scene(Json& document, const std::string& assignment) {
             }
             place = &(*place)[path[k]];
         } else if (const auto index = as_index(path[k]); place->is_array() && index && *index <= place->size()) {
+            // An entry that is null stays, to be refused as in a file: without it the others would move up.
             if (*index == place->size()) place->push_back(nullptr);
-            if (last && value.is_null()) {
-                place->erase(*index);
-                return;
-            }
             place = &(*place)[*index];
         } else {
             throw InputError("--set " + assignment + ": there is no \"" + path[k] + "\" in " + place->dump());

@@ -9,10 +9,10 @@ namespace apsl::scenes {
 
 /// Changes one value of a scene: "strain_limiting.regularization=1.05", "pins[0].motion.rotate.degrees_per_second=30".
 /// Missing objects on the way are made; an array takes an index up to its size. The value is JSON, or else text; null
-/// takes the key out. Naming one kind of mesh or integrator puts it in place of the other kinds. A mesh file given
-/// here is relative to the working directory, as everything else on a command line is.
-/// Throws InputError where there is no "=", or where the path runs through something that has no such entry.
-/// Instantiated for nlohmann::json and nlohmann::ordered_json.
+/// takes a key out, but no entry of an array. Naming one kind of mesh or integrator puts it in place of the other
+/// kinds. A mesh file given here is relative to the working directory, as everything else on a command line is. Throws
+/// InputError where there is no "=", or where the path runs through something that has no such entry. Instantiated for
+/// nlohmann::json and nlohmann::ordered_json.
 template <class Json>
 void override_scene(Json& document, const std::string& assignment);
 

@@ -196,7 +196,9 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
         parse_field(object, field, settings.parameters);
     });
     settings.options.regularization_per_triangle = !settings.regularization.empty();
-    settings.options.stretch_ceiling_per_triangle = !settings.stretch_ceilings.empty();
+    // A list in which no triangle has a ceiling is areas alone, as 0 is.
+    settings.options.stretch_ceiling_per_triangle =
+        std::ranges::any_of(settings.stretch_ceilings, [](float ceiling) { return ceiling > 0.0f; });
     settings.options.limits_stretch =
         settings.parameters.stretch_ceiling > 0.0f || settings.options.stretch_ceiling_per_triangle;
     settings.parameters.time_step = static_cast<float>(time_step);

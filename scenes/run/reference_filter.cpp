@@ -9,8 +9,9 @@ ReferenceFilter::ReferenceFilter(const ClothState& cloth, const StrainLimiting& 
     : parameters_(settings.parameters),
       keeps_contacts_(settings.options.keeps_contacts),
       regularization_(settings.regularization.begin(), settings.regularization.end()),
-      stretch_ceilings_(settings.stretch_ceilings.begin(), settings.stretch_ceilings.end()),
       limiter_(cloth.topology, settings.options) {
+    if (settings.options.stretch_ceiling_per_triangle)
+        stretch_ceilings_.assign(settings.stretch_ceilings.begin(), settings.stretch_ceilings.end());
     if (settings.options.limits_stretch) rest_shapes_ = rest_shapes(cloth);
     if (settings.options.bends) rest_hinges_ = reference::rest_hinges<double>(*cloth.topology, cloth.rest_positions);
 }

@@ -178,6 +178,10 @@ nlohmann::ordered_json to_json(const RunReport& report) {
          {{"count", report.caps.count},
           {"flattest", report.caps.flattest},
           {"height_over_longest_edge", report.caps.height}}},
+        {"needle_triangles",
+         {{"count", report.needles.count},
+          {"sharpest", report.needles.sharpest},
+          {"shortest_over_longest_edge", report.needles.shortest_over_longest}}},
         {"stages", report.stages},
         {"device_bytes", report.device_bytes},
         {"start_energy", to_json(report.start_energy)}};

@@ -5,6 +5,7 @@
 #include "pipeline/over_stretch.hpp"
 #include "run/cap_triangles.hpp"
 #include "run/light_vertices.hpp"
+#include "run/needle_triangles.hpp"
 #include "run/pieces.hpp"
 
 #include <apsl/stats.hpp>
@@ -95,6 +96,7 @@ struct RunReport {
     Pieces pieces;
     LightVertices light;
     CapTriangles caps;
+    NeedleTriangles needles;
     bool stand_alone = false;         ///< the limiter takes whole steps
     bool limits_stretch = false;      ///< then masses are raised as a matter of course
     std::vector<std::string> stages;  ///< what was there to run, in the order of a step

@@ -3,6 +3,7 @@
 #include "run/flat_cloth.hpp"
 #include "run/frame_output.hpp"
 #include "run/input_error.hpp"
+#include "run/input_files.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
 #include "run/progress.hpp"
@@ -11,6 +12,7 @@
 #include "run/summary.hpp"
 #include "run/whole_file.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -38,8 +40,9 @@ void add_settings_warning(const Scene& scene, std::vector<std::string>& warnings
                            ": integrator.stand_alone: areas alone do not hold a cloth together, which flows; give "
                            "strain_limiting a stretch_ceiling, 1.1 suits most");
     }
-    if (settings.options.matrix == Matrix::printed && settings.regularization.empty() &&
-        settings.parameters.regularization < 2.0f) {
+    const float least_regularization = settings.regularization.empty() ? settings.parameters.regularization
+                                                                       : std::ranges::min(settings.regularization);
+    if (settings.options.matrix == Matrix::printed && least_regularization < 2.0f) {
         warnings.push_back(
             scene.file +
             ": strain_limiting: sub-steps with the printed matrix diverge for a regularization below 2; use 2 or "
@@ -118,6 +121,11 @@ int run_command(const RunOptions& options) {
     const Pieces pieces = cloth.pieces;
     const LightVertices light = cloth.light;
     const CapTriangles caps = cloth.caps;
+    const NeedleTriangles needles = cloth.needles;
+    const std::vector<InputFile> inputs = input_files(scene);
+    if (options.out) check_no_input_in(*options.out, inputs);
+    if (options.report) check_not_an_input(*options.report, inputs);
+    if (options.out && options.report) check_report_apart(*options.report, *options.out);
     std::optional<OpenClDevice> device;
     if (scene.strain_limiting && options.backend == Backend::opencl) device = choose_opencl_device(options.device);
     if (options.out) make_writable_folder(*options.out);
@@ -135,13 +143,14 @@ int run_command(const RunOptions& options) {
     report.pieces = pieces;
     report.light = light;
     report.caps = caps;
+    report.needles = needles;
     report.stand_alone = scene.strain_limiting && scene.strain_limiting->options.integrates;
     report.limits_stretch = scene.strain_limiting && scene.strain_limiting->options.limits_stretch;
     const bool complete = simulate(simulation, scene.frames, output, report);
     if (!complete && !report.breakdown) {
         std::fprintf(stderr, "interrupted after %zu of %d frames; no report is written\n", report.frames.size(),
                      scene.frames);
-        return exit_interrupted;
+        return exit_code_of_interruption();
     }
     if (OpenClCloth* on = on_device(simulation.filter()); on != nullptr && options.profile)
         add_kernel_times(*on, report);

@@ -92,7 +92,7 @@ struct StrainLimiting {
     Options options;
     Parameters parameters;                ///< time_step is the scene's
     std::vector<float> regularization;    ///< α ≥ 1, [T], with Options::regularization_per_triangle
-    std::vector<float> stretch_ceilings;  ///< 0 or ≥ 1.01, [T], with Options::stretch_ceiling_per_triangle
+    std::vector<float> stretch_ceilings;  ///< 0 or ≥ 1.01, [T]; read with Options::stretch_ceiling_per_triangle
 
     bool operator==(const StrainLimiting&) const = default;
 };

@@ -119,6 +119,9 @@ SceneCloth make_scene_cloth(const Scene& scene) {
         if (const auto warning = light_vertices_warning(cloth.light)) cloth.warnings.push_back(name + ": " + *warning);
         cloth.caps = cap_triangles(cloth.state);
         if (const auto warning = cap_triangles_warning(cloth.caps)) cloth.warnings.push_back(name + ": " + *warning);
+        cloth.needles = needle_triangles(cloth.state);
+        if (const auto warning = needle_triangles_warning(cloth.needles, file != nullptr))
+            cloth.warnings.push_back(name + ": " + *warning);
         note_start_inside(scene, cloth.state, cloth.warnings);
         check_triangle_values(scene, *topology);
     } catch (const Error& error) {

@@ -5,6 +5,7 @@
 #include "pipeline/pins.hpp"
 #include "run/cap_triangles.hpp"
 #include "run/light_vertices.hpp"
+#include "run/needle_triangles.hpp"
 #include "run/pieces.hpp"
 #include "run/scene.hpp"
 
@@ -20,6 +21,7 @@ struct SceneCloth {
     Pieces pieces;
     LightVertices light;
     CapTriangles caps;
+    NeedleTriangles needles;
     std::vector<std::string> warnings;  ///< one line each, with what to do
 };
 

@@ -8,7 +8,11 @@
 
 namespace apsl::scenes {
 
-WholeFile::WholeFile(std::filesystem::path place) : place_(std::move(place)), temporary_(place_.string() + ".partial") {
+std::filesystem::path partial_file(const std::filesystem::path& place) {
+    return place.string() + ".partial";
+}
+
+WholeFile::WholeFile(std::filesystem::path place) : place_(std::move(place)), temporary_(partial_file(place_)) {
     // Never put a file in the place of a device or a pipe, least of all as root.
     if (std::filesystem::exists(place_) && !std::filesystem::is_regular_file(place_))
         throw InputError(place_.string() + ": exists and is no plain file, expected a place for one");

@@ -34,6 +34,9 @@ private:
     std::ofstream stream_;
 };
 
+/// Where a file for `place` is written before it is whole.
+std::filesystem::path partial_file(const std::filesystem::path& place);
+
 /// What cannot be written should be known before the work, not after it. Throws InputError where no file can be made
 /// at `file`.
 void check_file_place(const std::filesystem::path& file);

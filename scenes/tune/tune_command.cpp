@@ -3,6 +3,7 @@
 
 #include "fields.hpp"
 #include "run/commands.hpp"
+#include "run/input_files.hpp"
 #include "run/interruption.hpp"
 #include "run/parse_scene.hpp"
 #include "run/whole_file.hpp"
@@ -101,9 +102,16 @@ std::optional<bool> holds_without_bending(const Tuning& tuning, Document documen
     return tuning.goal.meets_target(*trial);
 }
 
+// Without springs and the limiter there is gravity alone, which meets a target where nothing holds the cloth.
+bool has_springs(const Scene& scene) {
+    return std::holds_alternative<ImplicitSpringsIntegrator>(scene.integrator) ||
+           std::holds_alternative<BendingSpringsIntegrator>(scene.integrator);
+}
+
 // What the tuned scene could do without, by trying: a line each. False where it was interrupted.
 bool tell_what_can_go(const Tuning& tuning, const Document& tuned, const Trial& best, bool limiter_needed) {
-    if (!limiter_needed) std::fprintf(tuning.stream, "could go: strain_limiting, the springs alone meet the target\n");
+    if (!limiter_needed && has_springs(tuning.scene))
+        std::fprintf(tuning.stream, "could go: strain_limiting, the springs alone meet the target\n");
     const auto* springs = std::get_if<ImplicitSpringsIntegrator>(&tuning.scene.integrator);
     if (springs != nullptr && springs->bend_stiffness > 0.0) {
         const std::optional<bool> holds = holds_without_bending(tuning, tuned);
@@ -190,13 +198,14 @@ bool names_a_solver(const Document& document) {
 
 int interruption() {
     std::fprintf(stderr, "interrupted; no scene is written\n");
-    return exit_interrupted;
+    return exit_code_of_interruption();
 }
 
 }  // namespace
 
 int tune_command(const TuneOptions& options) {
     const Tuning tuning = set_up(options);
+    if (options.out) check_not_an_input(*options.out, input_files(tuning.scene));
     if (options.out) check_file_place(*options.out);
     note_interruptions();
     Table table(tuning.stream);

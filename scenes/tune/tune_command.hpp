@@ -25,7 +25,7 @@ struct TuneOptions {
 
 /// Finds the cheapest settings of the limiter that meet the target and writes the scene with them; prints what was
 /// tried, and which stages the scene could do without. Exit code exit_broke_down where nothing met the target (the best
-/// is written all the same), else as in commands.hpp.
+/// is written all the same), else as in commands.hpp. The scene and its mesh are never overwritten.
 int tune_command(const TuneOptions& options);
 
 }  // namespace apsl::scenes

@@ -205,6 +205,9 @@ TEST_CASE("a stretch ceiling, for all triangles or one for each") {
     CHECK(each.options.stretch_ceiling_per_triangle);
     CHECK(each.options.limits_stretch);
     CHECK_FALSE(limiting("0").options.limits_stretch);
+    const StrainLimiting none = limiting("[0, 0]");
+    CHECK(none.stretch_ceilings == std::vector<float>{0.0f, 0.0f});
+    CHECK(none.options == limiting("0").options);
 }
 
 TEST_CASE("what is wrong is named by its path, with what was expected") {

@@ -37,6 +37,8 @@ TEST_CASE("wrong usage is refused in one line") {
     check_refused("run " + scene_path("curtain.json") + " --set frames", "--set frames: expected path=value");
     check_refused("run " + scene_path("curtain.json") + " --set strain_limiting.alpha=1.1",
                   "strain_limiting.alpha: unknown key");
+    check_refused("validate " + scene_path("curtain.json") + " --set pins[0]=null",
+                  "pins[0]: expected an object, got null");
 }
 
 TEST_CASE("wrong scenes are refused in one line, by run and by validate") {
@@ -83,6 +85,17 @@ TEST_CASE("lists of values that do not fit the mesh are refused in one line") {
                       "strain_limiting.stretch_ceiling: expected one number or one for each of 32 triangles, got 2");
 }
 
+TEST_CASE("a list without a stretch ceiling takes no more than a stretch ceiling of 0") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("bends.json", R"({"mesh": {"grid": {"vertices": [2, 2]}}, "frames": 1,
+            "integrator": {"stand_alone": {"bending": 1e-4}}, "strain_limiting": {}})");
+    const std::string refused = "integrator: stand_alone: bends is on, which needs limits_stretch";
+    for (const char* ceiling : {"0", "[0,0]"})
+        check_refused("run " + scene + " --set strain_limiting.stretch_ceiling=" + ceiling, refused);
+    check_refused("run " + scene + " --set strain_limiting.stretch_ceiling=[0,0,0] --set integrator.stand_alone={}",
+                  "strain_limiting.stretch_ceiling: expected one number or one for each of 2 triangles, got 3");
+}
+
 TEST_CASE("a device that is not there is refused in one line") {
     const std::string curtain = "run --frames 1 " + scene_path("curtain.json");
     check_refused(curtain + " --device 99", "--device 99: no such device, expected 0 to");
@@ -107,4 +120,39 @@ TEST_CASE("places that cannot be written to are refused in one line, before anyt
     check_refused(curtain + " --report /dev/null", "/dev/null: exists and is no plain file");
     check_refused(curtain + " --report " + (folder.path() / "none/report.json").string(), "no such folder");
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+}
+
+TEST_CASE("an input is never overwritten, whatever names lead to it: refused in one line that names both") {
+    const TemporaryFolder folder;
+    const auto in_folder = [&](const char* name) { return (folder.path() / name).string(); };
+    const std::string mesh_text = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n";
+    const std::string scene_text = R"({"mesh": {"file": "cloth.obj"}, "frames": 1, "strain_limiting": {}})";
+    const std::string mesh = folder.write("cloth.obj", mesh_text);
+    const std::string scene = folder.write("scene.json", scene_text);
+    std::filesystem::create_symlink(scene, folder.path() / "link.json");
+    std::filesystem::create_hard_link(mesh, folder.path() / "hard.obj");
+    std::filesystem::create_hard_link(scene, folder.path() / "later.json.partial");
+    const auto check_kept = [&](const std::string& arguments, const std::string& message) {
+        check_refused(arguments, message);
+        CHECK(read_bytes(mesh) == mesh_text);
+        CHECK(read_bytes(scene) == scene_text);
+        CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 5);
+    };
+    for (const std::string& command : {"run " + scene + " --report ", "tune " + scene + " --target 0.1 --out "}) {
+        check_kept(command + scene, scene + ": would overwrite the scene, " + scene);
+        check_kept(command + in_folder("link.json"), "link.json: would overwrite the scene, " + scene);
+        check_kept(command + in_folder("hard.obj"), "hard.obj: would overwrite the mesh, " + mesh);
+        check_kept(command + in_folder("later.json"), "later.json.partial: would overwrite the scene, " + scene);
+    }
+    check_kept("run " + scene + " --out " + folder.path().string(), "cloth.obj: would overwrite the mesh, " + mesh);
+    const TemporaryFolder elsewhere;
+    for (const char* name : {"report.json", "frame_0000.vtp", "cloth.pvd.partial"}) {
+        const TemporaryFolder other;
+        const std::string named = other.write(name, R"({"mesh": {"grid": {"vertices": [2, 2]}}, "frames": 1})");
+        check_refused("run " + named + " --out " + other.path().string(), "would overwrite the scene, " + named);
+        CHECK(std::filesystem::file_size(named) > 0);
+    }
+    check_refused("run " + scene + " --out " + elsewhere.path().string() + " --report " +
+                      (elsewhere.path() / "cloth.pc2").string(),
+                  "cloth.pc2: the report would overwrite what the run leaves in");
 }

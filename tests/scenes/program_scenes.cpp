@@ -60,4 +60,6 @@ TEST_CASE("garments run by path") {
     CHECK(report["triangles"] == (file == "tshirt.obj" ? 3726 : 4925));
     CHECK(report["vertices"] == (file == "tshirt.obj" ? 1921 : 2565));
     CHECK(report["frames"].size() == 10);
+    CHECK(report["needle_triangles"]["count"] == 0);
+    CHECK(report["needle_triangles"]["shortest_over_longest_edge"] > 0.2);
 }

@@ -100,6 +100,16 @@ class Tune(unittest.TestCase):
         scene = self.write("near.json", {**FLAG, "colliders": near, "frames": 4})
         self.assertNotIn("colliders", self.apsl("tune", scene, "--target", 0.9, "--out", self.out).stdout)
 
+    def test_a_limiter_without_springs_could_not_go(self):
+        free = {"mesh": FLAG["mesh"], "frames": 2, "strain_limiting": {"stretch_ceiling": 1.1, "sub_steps": 2}}
+        for integrator in ({"stand_alone": {}}, {"none": {}}):
+            with self.subTest(integrator=integrator):
+                scene = self.write("free.json", {**free, "integrator": integrator})
+                done = self.apsl("tune", scene, "--target", 0.9, "--out", self.out)
+                # Gravity alone meets the target too: nothing holds the cloth.
+                self.assertIn("meets the target", done.stdout.splitlines()[1])
+                self.assertNotIn("could go: strain_limiting", done.stdout)
+
     def test_what_cannot_be_met_is_said_and_the_best_written(self):
         done = self.apsl("tune", self.scene, "--target", 1e-9, "--budget-ms", 1e-6, "--frames", 3, "--out", self.out,
                          code=1)

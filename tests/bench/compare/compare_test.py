@@ -162,6 +162,22 @@ class Compare(unittest.TestCase):
         self.assertIn("interrupted before run 2 of 2", errors)
         self.assertEqual([run["scene"] for run in self.results()["runs"]], ["flag"])
 
+    def test_an_input_is_never_overwritten(self):
+        mesh = self.folder / "one.obj"
+        mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
+        scene = self.write("one.json", {"mesh": {"file": "one.obj"}, "frames": 1})
+        study = self.write("study.json", {"methods": ["none"]})
+        solution = self.write("r.one.converged.json", {"mesh": {"file": "one.obj"}, "frames": 1})
+        for input_file, what, out in ((scene, "scene", scene), (mesh, "mesh", mesh), (study, "study", study)):
+            with self.subTest(what=what):
+                before = input_file.read_bytes()
+                done = self.compare(scene, "--study", study, "--out", out, code=2)
+                self.assertEqual(done.stderr, f"error: {out}: would overwrite the {what}, {input_file}, "
+                                              "expected another place for the output\n")
+                self.assertEqual(input_file.read_bytes(), before)
+        self.assertIn(f"would overwrite the scene, {solution}",
+                      self.compare(scene, solution, "--methods", "none", "--out", self.folder / "r.json", code=2).stderr)
+
     def test_out_of_time_is_a_result_that_more_time_replaces(self):
         arguments = [self.flag, "--methods", "none", "--frames", 300, "--out", self.out]
         self.compare(*arguments, "--run-seconds", 1e-9)
