@@ -64,6 +64,8 @@ void check(const Struct& given, const Field<Struct, Value>& field) {
     }
 }
 
+constexpr const char* without_a_ceiling = "areas and bending alone let a cloth flow in its plane";
+
 // The first option that small steps alone can give; null where there is none.
 const char* needs_small_steps(const Options& options) {
     if (options.integrates) return "integrates";
@@ -104,7 +106,7 @@ void validate(const Options& options) {
     if (options.acceleration_per_vertex && !options.integrates)
         invalid("acceleration_per_vertex is on, which needs integrates");
     if (options.bends && !options.limits_stretch)
-        invalid("bends is on, which needs limits_stretch: areas and bending alone let a cloth flow in its plane");
+        invalid(std::string("bends is on, which needs limits_stretch: ") + without_a_ceiling);
     if (options.limits_stretch) {
         if (resolved_solver(options) != Solver::chebyshev)
             invalid("a stretch ceiling (limits_stretch) needs solver chebyshev");
@@ -149,6 +151,8 @@ void validate(const Options& options, const Parameters& parameters) {
         invalid("acceleration or damping is given, but integrates is off");
     if (parameters.bending > 0.0f && !options.bends)
         invalid("bending is " + number(parameters.bending) + ", expected 0: bends is off");
+    if (parameters.bending > 0.0f && parameters.stretch_ceiling == 0.0f && !options.stretch_ceiling_per_triangle)
+        invalid("bending is " + number(parameters.bending) + " with a stretch_ceiling of 0: " + without_a_ceiling);
     if (parameters.stretch_ceiling > 0.0f && !options.limits_stretch)
         invalid("stretch_ceiling is " + number(parameters.stretch_ceiling) + ", expected 0: limits_stretch is off");
     if (resolved_solver(options) == Solver::chebyshev && parameters.adaptive_threshold > 0)

@@ -77,7 +77,7 @@ Parameters random_parameters(Random& random, bool may_adapt, const Options& opti
     if (options.integrates) {
         p.acceleration = random.one_of<std::array<float, 3>>({{}, {0.0f, -9.81f, 0.0f}, {0.0f, 1e3f, -1.0f}});
         p.damping = random.one_of({0.0f, 0.5f, 100.0f});
-        if (options.bends) p.bending = random.one_of({0.0f, 1e-6f, 1e-3f, 10.0f});
+        if (options.bends && p.stretch_ceiling > 0.0f) p.bending = random.one_of({0.0f, 1e-6f, 1e-3f, 10.0f});
     }
     if (keeps_contacts || options.integrates) {
         p.sub_steps = std::max(p.sub_steps, 2);

@@ -331,10 +331,15 @@ TEST_CASE("bending: what it needs", "[bending]") {
     CHECK(message({}, {.integrates = true, .bends = true}) ==
           "bends is on, which needs limits_stretch: areas and bending alone let a cloth flow in its plane");
     CHECK(message({.bending = 1e-4f}, {}) == "bending is 1e-04, expected 0: bends is off");
+    CHECK(message({.bending = 1e-4f}, bending_options) ==
+          "bending is 1e-04 with a stretch_ceiling of 0: areas and bending alone let a cloth flow in its plane");
     CHECK(message({.bending = -1.0f}, bending_options) == "bending is -1, expected a finite number >= 0 (N·m)");
     CHECK(message({.bending_iterations = 0}, bending_options) ==
           "bending_iterations is 0, expected a whole number >= 1 and <= 1000");
-    CHECK(message({.bending = 1e-4f}, bending_options) == "no error");
+    CHECK(message({.stretch_ceiling = 1.1f, .bending = 1e-4f}, bending_options) == "no error");
+    Options one_each = bending_options;
+    one_each.stretch_ceiling_per_triangle = true;
+    CHECK(message({.bending = 1e-4f}, one_each) == "no error");
 
     std::vector<double> x{0, 0, 0, 0, 1, 0, 1, 0, 0, -1, 1, 0}, v(12, 0.0), w(4, 1.0);
     const auto topology = Topology::build(std::vector<Triangle>{{0, 1, 2}, {1, 0, 3}}, 4);
