@@ -79,6 +79,7 @@ def is_caught(fault, passed, copy):
         code, output = run(fault.check, copy)
     finally:
         path.write_text(whole, encoding="utf-8")
+        build(fault.check, copy)  # a program that holds a fault must not be left to be run by hand
     if code != 0 and re.search(fault.says, output):
         return True
     print(f"  not caught: exit code {code}, {fault.says!r} "
