@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -23,6 +25,14 @@ inline Eigen::Map<Eigen::Vector3d> vector_at(std::span<double> values, std::size
 /// m from positions in m, [3V].
 inline double edge_length(std::span<const double> positions, VertexPair edge) {
     return (vector_at(positions, edge[1]) - vector_at(positions, edge[0])).norm();
+}
+
+/// m, shortest first, from positions in m, [3V].
+inline std::array<double, 3> sorted_edge_lengths(std::span<const double> positions, const Triangle& triangle) {
+    std::array<double, 3> lengths{};
+    for (std::size_t k = 0; k < 3; ++k) lengths[k] = edge_length(positions, {triangle[k], triangle[(k + 1) % 3]});
+    std::sort(lengths.begin(), lengths.end());
+    return lengths;
 }
 
 /// m, the diagonal of the box around positions in m, [3V ≥ 3].

@@ -3,8 +3,6 @@
 
 #include "pipeline/geometry.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cstdio>
 
 namespace apsl::scenes {
@@ -13,21 +11,13 @@ namespace {
 // Of the longest edge. A triangle with a shorter edge is rather a needle, which is told of apart.
 constexpr double short_edge = 0.1;
 
-std::array<double, 3> sorted_edges(const ClothState& cloth, const Triangle& triangle) {
-    std::array<double, 3> lengths{};
-    for (std::size_t k = 0; k < 3; ++k)
-        lengths[k] = edge_length(cloth.rest_positions, {triangle[k], triangle[(k + 1) % 3]});
-    std::sort(lengths.begin(), lengths.end());
-    return lengths;
-}
-
 }  // namespace
 
 CapTriangles cap_triangles(const ClothState& cloth) {
     CapTriangles caps;
     const auto triangles = cloth.topology->triangles();
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-        const auto [shortest, middle, longest] = sorted_edges(cloth, triangles[t]);
+        const auto [shortest, middle, longest] = sorted_edge_lengths(cloth.rest_positions, triangles[t]);
         if (!(shortest > short_edge * longest)) continue;
         const double height = 2.0 * triangle_area(cloth.rest_positions, triangles[t]) / (longest * longest);
         if (height < cap_height) ++caps.count;

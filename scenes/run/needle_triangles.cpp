@@ -15,11 +15,7 @@ NeedleTriangles needle_triangles(const ClothState& cloth) {
     double shortest_of_others = std::numeric_limits<double>::infinity();
     const auto triangles = cloth.topology->triangles();
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-        const Triangle& corners = triangles[t];
-        const auto length = [&](std::size_t a, std::size_t b) {
-            return edge_length(cloth.rest_positions, {corners[a], corners[b]});
-        };
-        const auto [shortest, longest] = std::minmax({length(0, 1), length(1, 2), length(2, 0)});
+        const auto [shortest, middle, longest] = sorted_edge_lengths(cloth.rest_positions, triangles[t]);
         const double ratio = shortest / longest;
         if (ratio < needles.shortest_over_longest) {
             needles.shortest_over_longest = ratio;
