@@ -110,7 +110,8 @@ apsl::Options options_from(const apsl_options* options) {
             .integrates = o.integrates != 0,
             .keeps_contacts = o.keeps_contacts != 0,
             .bends = o.bends != 0,
-            .acceleration_per_vertex = o.acceleration_per_vertex != 0};
+            .acceleration_per_vertex = o.acceleration_per_vertex != 0,
+            .tethers_per_vertex = o.tethers_per_vertex};
 }
 
 apsl::Parameters parameters_from(const apsl_parameters& p) {
@@ -209,6 +210,7 @@ apsl_options apsl_default_options(void) {
             o.keeps_contacts,
             o.bends,
             o.acceleration_per_vertex,
+            o.tethers_per_vertex,
             {}};
 }
 
@@ -339,7 +341,9 @@ apsl_result apsl_limiter_enqueue(apsl_limiter* limiter, cl_command_queue queue, 
                                   .stretch_ceilings = view_from(buffers->stretch_ceilings),
                                   .contacts = view_from(buffers->contacts),
                                   .rest_hinges = view_from(buffers->rest_hinges),
-                                  .accelerations = view_from(buffers->accelerations)};
+                                  .accelerations = view_from(buffers->accelerations),
+                                  .tether_anchors = view_from(buffers->tether_anchors),
+                                  .tether_lengths = view_from(buffers->tether_lengths)};
         const cl_event end = limiter->limiter.enqueue(queue, views, list, events(wait_count, wait_list));
         hand_over(end, event);
     });

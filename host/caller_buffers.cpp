@@ -77,6 +77,9 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
                    "keeps_contacts");
     check_optional(options.acceleration_per_vertex, buffers.accelerations, position_floats(options, counts),
                    "accelerations", "acceleration_per_vertex");
+    const std::size_t tethers = std::size_t{options.tethers_per_vertex} * counts.vertices;
+    check_optional(tethers > 0, buffers.tether_anchors, tethers, "tether_anchors", "tethers_per_vertex");
+    check_optional(tethers > 0, buffers.tether_lengths, tethers, "tether_lengths", "tethers_per_vertex");
 }
 
 const BufferView& corrected(const Buffers& buffers) {

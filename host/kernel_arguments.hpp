@@ -16,6 +16,11 @@ const Array* where_accelerated(const Array& array, const Buffers& caller) {
     return caller.accelerations.buffer ? &array : nullptr;
 }
 
+/// `view` where vertices have tethers, likewise.
+inline const BufferView* where_tethered(const BufferView& view, const Buffers& caller) {
+    return caller.tether_anchors.buffer ? &view : nullptr;
+}
+
 template <class Arrays>
 const Kernel& set_parameters(const Kernel& kernel, const Arrays& a, const apslk_parameter_block& block, cl_uint first,
                              cl_uint count) {
@@ -91,7 +96,9 @@ const Kernel& judge_whole_step(const Kernel& kernel, const Arrays& a) {
 template <class Arrays>
 const Kernel& start_small_steps(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.moved, a.motion,
-                         a.total_correction, caller.velocities, where_accelerated(a.accelerations, caller));
+                         a.total_correction, caller.velocities, where_accelerated(a.accelerations, caller),
+                         where_tethered(caller.tether_anchors, caller), where_tethered(caller.tether_lengths, caller),
+                         where_tethered(caller.positions, caller), where_tethered(caller.velocities, caller));
 }
 
 template <class Arrays>
@@ -178,7 +185,9 @@ const Kernel& gather_displacements(const Kernel& kernel, const Arrays& a, const 
                                    cl_int sub_step, cl_uint slot) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.corner_offsets, a.corners,
                          a.gradients, pressure, a.moved, a.motion, a.total_correction, a.vertex_order,
-                         or_any(caller.contacts, caller), sub_step, slot, where_accelerated(a.accelerations, caller));
+                         or_any(caller.contacts, caller), sub_step, slot, where_accelerated(a.accelerations, caller),
+                         where_tethered(caller.tether_anchors, caller), where_tethered(caller.tether_lengths, caller),
+                         where_tethered(caller.positions, caller), where_tethered(caller.velocities, caller));
 }
 
 /// `pressure`: of the last sub-step.

@@ -143,7 +143,7 @@ std::string build_options(const Options& options, std::uint32_t patch_vertices) 
            define("APSLK_INTEGRATES", options.integrates ? 1 : 0) +
            define("APSLK_ACCELERATION_PER_VERTEX", options.acceleration_per_vertex ? 1 : 0) +
            define("APSLK_KEEPS_CONTACTS", options.keeps_contacts ? 1 : 0) +
-           define("APSLK_BENDS", options.bends ? 1 : 0) +
+           define("APSLK_BENDS", options.bends ? 1 : 0) + define("APSLK_TETHERS", options.tethers_per_vertex) +
            define("APSLK_MATRIX", static_cast<std::uint32_t>(options.matrix)) +
            define("APSLK_PATCH_VERTICES", patch_vertices) +
            define("APSLK_REGULARIZATION_PER_TRIANGLE", options.regularization_per_triangle ? 1 : 0) +

@@ -32,6 +32,7 @@ APSLK_KERNEL void filter_in_one_group(
     const uint c = (uint)get_group_id(1);
     __global apslk_stats* stats = all_stats + c;
     const apslk_touched nothing_touched = {0, vertex_order, 0.0f};
+    const apslk_tethers no_tethers = {0, 0, 0, 0};
     int sub_steps = 0;
     bool started = false;
 
@@ -94,7 +95,7 @@ APSLK_KERNEL void filter_in_one_group(
         // for all whether to enter it.
         begin_small_steps(cloths[c], starting, parameters[c].time_step, free_part(parameters + c, 0),
                           small_step_count(parameters[c]), vertex_order, moved, motion, total_correction,
-                          velocities + velocity_offset);
+                          velocities + velocity_offset, no_tethers);
         if (going_on && !starting) {
             if (APSLK_WARM_START_SUB_STEPS > 0) {
                 copy_pressures(cloths[c], pressure, pressure + kept_place(sub_steps, pressure_stride));
@@ -116,7 +117,7 @@ APSLK_KERNEL void filter_in_one_group(
                                                  raises_masses ? APSLK_HELD_TENSION : INFINITY};
             if (in_small_steps)  // uniform
                 advance_vertices(cloths[c], true, small_step, free_part(parameters + c, 0), corner_offsets, corners,
-                                 gradients, pressure, moved, motion, total_correction, nothing_touched);
+                                 gradients, pressure, moved, motion, total_correction, nothing_touched, no_tethers);
             else
                 displace_vertices(cloths[c], solved, corner_offsets, corners, gradients, pressure, moved);
             const bool met = solve.residual <= parameters[c].tolerance_squared * solve.initial_squared_residual;

@@ -2,7 +2,7 @@
 // Eq. (6) with λ = p Δt²: x_i −= w_i Σ_{a∋i} λ_a g_{a,i}, on to the next of small steps, and how the solve ended.
 // Reference: apsl::reference, displacements, effective_masses and strain_limiter. Moves 12 B corners, 2 B offsets, 24 B
 // gradients, 4 B pressure, 16 B position read and written, a triangle; in small steps 32 B and the 4 B of `stiffening`
-// more, with contacts 36 B more a vertex, with accelerations 16 B.
+// more, with contacts 36 B more a vertex, with accelerations 16 B, with tethers 8 B a tether and what its anchor takes.
 #include "layout.h"
 #include "regularization.h"
 #include "vertex_motion.h"
@@ -20,7 +20,7 @@ APSLK_KERNEL void gather_displacements(__global const apslk_cloth* cloths, __glo
                                        __global const float* pressure, __global float4* moved, __global float4* motion,
                                        __global float4* total_correction, __global const uint* vertex_order,
                                        __global const float* contacts, ulong contact_offset, int sub_step,
-                                       uint slot APSLK_ACCELERATIONS_ARGUMENT) {
+                                       uint slot APSLK_ACCELERATIONS_ARGUMENT APSLK_TETHERS_ARGUMENT) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const float initial = states[c].initial_squared_residual;
@@ -42,8 +42,9 @@ APSLK_KERNEL void gather_displacements(__global const apslk_cloth* cloths, __glo
                                          states[c].greatest_mass,
                                          raises_masses ? APSLK_HELD_TENSION : INFINITY};
     const apslk_touched touched = {contacts + contact_offset, vertex_order, parameters[c].time_step};
+    const apslk_tethers tethers = APSLK_TETHERS_GIVEN;
     advance_vertices(cloths[c], in_small_steps && !states[c].stopped, small_step, free, corner_offsets, corners,
-                     gradients, pressure, moved, motion, total_correction, touched);
+                     gradients, pressure, moved, motion, total_correction, touched, tethers);
     const float residual = sum_partials(partials, APSLK_PARTIAL_RESIDUAL_EVEN + slot, (uint)get_num_groups(0), scratch);
     if (get_group_id(0) == 0 && get_local_id(0) == 0 && !states[c].stopped) {
         // A polynomial is as long as it is, and nothing measures what it leaves.

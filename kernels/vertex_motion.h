@@ -4,6 +4,7 @@
 #ifndef APSLK_VERTEX_MOTION_H
 #define APSLK_VERTEX_MOTION_H
 
+#include "caller_vectors.h"
 #include "contact.h"
 #include "effective_mass.h"
 #include "free_motion.h"
@@ -11,52 +12,9 @@
 #include "layout.h"
 #include "limits_stretch.h"
 #include "small_steps.h"
+#include "tethers.h"
 #include "vertex_gather.h"
 #include "work_group.h"
-
-#ifndef APSLK_POSITION_STRIDE
-#define APSLK_POSITION_STRIDE 3
-#endif
-#ifndef APSLK_VELOCITY_STRIDE
-#define APSLK_VELOCITY_STRIDE 3
-#endif
-// From x to y to z: 1 where they lie side by side.
-#ifndef APSLK_POSITION_COMPONENT_STRIDE
-#define APSLK_POSITION_COMPONENT_STRIDE 1
-#endif
-#ifndef APSLK_VELOCITY_COMPONENT_STRIDE
-#define APSLK_VELOCITY_COMPONENT_STRIDE 1
-#endif
-#ifndef APSLK_INVERSE_MASS_STRIDE
-#define APSLK_INVERSE_MASS_STRIDE 1
-#endif
-
-APSLK_INLINE float3 load_vector(__global const float* x, ulong component_stride) {
-    return component_stride == 1 ? vload3(0, x) : (float3)(x[0], x[component_stride], x[2 * component_stride]);
-}
-
-APSLK_INLINE void store_vector(float3 v, __global float* x, ulong component_stride) {
-    if (component_stride == 1) {
-        vstore3(v, 0, x);
-    } else {
-        x[0] = v.x;
-        x[component_stride] = v.y;
-        x[2 * component_stride] = v.z;
-    }
-}
-
-// Explicitly fused, so that predicting twice gives the same bits whatever the compiler contracts.
-APSLK_INLINE float3 predicted_position(float3 position, float3 velocity, float time_step) {
-    return fma((float3)(time_step), velocity, position);
-}
-
-APSLK_INLINE float3 load_position(__global const float* positions, uint vertex) {
-    return load_vector(positions + (ulong)vertex * APSLK_POSITION_STRIDE, APSLK_POSITION_COMPONENT_STRIDE);
-}
-
-APSLK_INLINE float3 load_velocity(__global const float* velocities, uint vertex) {
-    return load_vector(velocities + (ulong)vertex * APSLK_VELOCITY_STRIDE, APSLK_VELOCITY_COMPONENT_STRIDE);
-}
 
 // Into the limiter's order of vertices, for what `free` then gives them.
 APSLK_INLINE void order_accelerations(apslk_cloth cloth, bool active, __global const uint* vertex_order,
@@ -133,13 +91,20 @@ APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, 
 APSLK_INLINE void begin_small_steps(apslk_cloth cloth, bool active, float time_step, apslk_free_part free,
                                     int small_steps, __global const uint* vertex_order, __global float4* moved,
                                     __global float4* motion, __global float4* total_correction,
-                                    __global const float* velocities) {
+                                    __global const float* velocities, apslk_tethers tethers) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     const float part = 1.0f / (float)small_steps;
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
-        const uint place = cloth.vertex_begin + v;
-        const float3 velocity = load_velocity(velocities, vertex_order[place]);
+        const uint place = cloth.vertex_begin + v, vertex = vertex_order[place];
+        float3 velocity = load_velocity(velocities, vertex);
         const float4 start = motion[place];
+#if APSLK_TETHERS
+        const apslk_move first_part = {part, part * time_step};
+        if (start.w > 0.0f)
+            velocity = within_reach(start.xyz, time_step * velocity, first_part, tethers, cloth, vertex) / time_step;
+#else
+        (void)tethers;
+#endif
         const float3 step = time_step * after_free_part(free, place, velocity, start.w);
         moved[place] = (float4)(fma((float3)(part), step, start.xyz), start.w);
         motion[place] = (float4)(step, start.w);
@@ -213,7 +178,7 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
                                    __global const uint* corner_offsets, __global const uint* corners,
                                    __global const apslk_gradients* gradients, __global const float* pressure,
                                    __global float4* moved, __global float4* motion, __global float4* total_correction,
-                                   apslk_touched touched) {
+                                   apslk_touched touched, apslk_tethers tethers) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     const float parts = (float)small_step.small_steps;
     const float parts_left = fmax((float)(small_step.small_steps - small_step.sub_step), 1.0f);
@@ -266,7 +231,11 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
                 }
             }
             keep_in_small_step(&x, &step, &total, touched, i, small_step);
-            if (onward > 0.0f) step = (float4)(after_free_part(free, i, step.xyz, given), 0.0f);
+            if (onward > 0.0f) {
+                const apslk_move next_part = {onward, (float)(small_step.sub_step + 2) * onward * touched.time_step};
+                step.xyz = within_reach(x.xyz, step.xyz, next_part, tethers, cloth, touched.vertex_order[i]);
+                step = (float4)(after_free_part(free, i, step.xyz, given), 0.0f);
+            }
             motion[i] = (float4)(step.xyz, given);
 #else
                 step += parts * change;
@@ -284,6 +253,7 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
 #endif
             (void)free;
             (void)touched;
+            (void)tethers;
 #endif
             total_correction[i] = total;
         }

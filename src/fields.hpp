@@ -146,6 +146,8 @@ inline constexpr std::tuple option_fields{
     Field{"acceleration_per_vertex", &Options::acceleration_per_vertex, Bounds{}, "",
           "Each vertex has an acceleration beside the one of all, given with every call. It requires integrates.",
           false},
+    Field{"tethers_per_vertex", &Options::tethers_per_vertex, Bounds{.least = 0.0, .greatest = 16.0}, "",
+          "Tethers of each vertex to pinned vertices, given with every call. It requires integrates.", false},
 };
 
 /// Of the caller's buffers.

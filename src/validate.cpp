@@ -105,6 +105,8 @@ void validate(const Options& options) {
     if (options.bends && !options.integrates) invalid("bends is on, which needs integrates");
     if (options.acceleration_per_vertex && !options.integrates)
         invalid("acceleration_per_vertex is on, which needs integrates");
+    if (options.tethers_per_vertex > 0 && !options.integrates)
+        invalid("tethers_per_vertex is " + std::to_string(options.tethers_per_vertex) + ", which needs integrates");
     if (options.bends && !options.limits_stretch)
         invalid(std::string("bends is on, which needs limits_stretch: ") + without_a_ceiling);
     if (options.limits_stretch) {

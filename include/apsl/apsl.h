@@ -115,7 +115,8 @@ typedef struct apsl_options {
     int32_t keeps_contacts;               /**< not 0: a contacts buffer is given with every call */
     int32_t bends;                        /**< not 0: hinges resist bending; rest hinges are given with every call */
     int32_t acceleration_per_vertex;      /**< not 0: an accelerations buffer is given with every call */
-    uint32_t reserved[5];                 /**< zeros; room for fields to come, so that the size stays */
+    uint32_t tethers_per_vertex;          /**< 0 to 16; with integrates: tether buffers are given with every call */
+    uint32_t reserved[4];                 /**< zeros; room for fields to come, so that the size stays */
 } apsl_options;
 
 /** apsl::Parameters: what may change from call to call. Begin with apsl_default_parameters(). */
@@ -139,7 +140,7 @@ typedef struct apsl_parameters {
     uint32_t reserved[6];       /**< zeros; room for fields to come, so that the size stays */
 } apsl_parameters;
 
-/** apsl::BufferView: 32-bit floats in a buffer of the caller's. */
+/** apsl::BufferView: 32-bit numbers in a buffer of the caller's. */
 typedef struct apsl_buffer_view {
     cl_mem buffer; /**< the caller's; must live until the calls that use it complete */
     size_t offset; /**< bytes, a multiple of 4 */
@@ -163,6 +164,9 @@ typedef struct apsl_buffers {
                                        triangles is a hinge, in ascending order of its vertices. Only with bends */
     apsl_buffer_view accelerations; /**< m/s2, [V] laid out as positions are: beside the acceleration of all; only with
                                        acceleration_per_vertex */
+    apsl_buffer_view tether_anchors; /**< uint32_t, tethers_per_vertex a vertex, [V]: pinned vertices of the same cloth,
+                                        as they lie in the buffers; only with tethers_per_vertex */
+    apsl_buffer_view tether_lengths; /**< m, likewise: how far a vertex may be from each; 0: no tether */
 } apsl_buffers;
 
 /** apsl::Stats: what a call did to one cloth. */

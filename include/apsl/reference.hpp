@@ -30,6 +30,9 @@ struct Buffers {
     std::span<const Real> rest_hinges = {};  ///< [2H], with Options::bends; as apsl::Buffers has them
     /// m/s², [3V], with Options::acceleration_per_vertex; as apsl::Buffers has them
     std::span<const Real> accelerations = {};
+    std::span<const std::uint32_t> tether_anchors =
+        {};                                     ///< with Options::tethers_per_vertex; as apsl::Buffers has them
+    std::span<const Real> tether_lengths = {};  ///< m ≥ 0, likewise
 };
 
 /// The filter of Algorithm 1 on the CPU, one thread, plain code: what device results are checked against.
@@ -39,8 +42,9 @@ template <class Real>
 class BasicStrainLimiter {
 public:
     /// Of the options `matrix`, `solver`, `warm_start_sub_steps`, `bound_interval`, `limits_stretch`, `integrates`,
-    /// `keeps_contacts`, `bends` and `acceleration_per_vertex` count here; the others say how a device is used. α is
-    /// one for each triangle where the buffers have one. Throws Error(invalid_argument) as validate() does.
+    /// `keeps_contacts`, `bends`, `acceleration_per_vertex` and `tethers_per_vertex` count here; the others say how a
+    /// device is used. α is one for each triangle where the buffers have one. Throws Error(invalid_argument) as
+    /// validate() does.
     explicit BasicStrainLimiter(std::shared_ptr<const Topology> topology, const Options& options = {});
     ~BasicStrainLimiter();
     BasicStrainLimiter(BasicStrainLimiter&&) noexcept;  ///< what was moved from may only be assigned to or destroyed

@@ -10,6 +10,7 @@
 #include "run/opencl_step.hpp"
 #include "run/reference_filter.hpp"
 #include "run/reference_step.hpp"
+#include "run/scene_tethers.hpp"
 
 #include <optional>
 #include <string>
@@ -39,10 +40,11 @@ inline bool keeps_contacts(const FilterStage& stage) {
 }
 
 /// The scene's strain limiting for its cloth: with contact in the call where a stretch ceiling would otherwise be lost
-/// to it, and with as many evaluations of bending as the mesh needs.
+/// to it, with as many evaluations of bending as the mesh needs, and with a tether to each of a few pinned pieces.
 inline StrainLimiting limiting_of(const Scene& scene, const ClothState& cloth) {
     StrainLimiting limiting = scene.strain_limiting.value();
     if (limiting.options.bends) limiting.parameters.bending_iterations = bending_iterations(cloth, limiting.parameters);
+    if (limiting.tethers > 0.0f) limiting.options.tethers_per_vertex = tethers_per_vertex(cloth);
     const Parameters& parameters = limiting.parameters;
     if (limiting.options.limits_stretch && parameters.stepping != Stepping::whole_step && parameters.sub_steps >= 2)
         limiting.options.keeps_contacts = !scene.colliders.empty();

@@ -3,6 +3,7 @@
 
 #include "run/check_opencl.hpp"
 #include "run/rest_shapes.hpp"
+#include "run/scene_tethers.hpp"
 
 #include <apsl/reference.hpp>
 
@@ -73,6 +74,11 @@ OpenClCloth::OpenClCloth(const OpenClDevice& device, const ClothState& cloth, co
     if (settings.options.bends && cloth.topology->hinge_count() > 0)
         rest_hinges_ =
             make_buffer(to_float(reference::rest_hinges<double>(*cloth.topology, cloth.rest_positions)), "rest hinges");
+    if (settings.options.tethers_per_vertex > 0) {
+        const Tethers tethers = scene_tethers(cloth, settings);
+        tether_anchors_ = make_buffer(std::as_bytes(std::span(tethers.anchors)), "anchors of tethers");
+        tether_lengths_ = make_buffer(tethers.lengths, "lengths of tethers");
+    }
     if (settings.options.stretch_ceiling_per_triangle)
         stretch_ceilings_ = make_buffer(settings.stretch_ceilings, "stretch ceilings");
     limiter_.set_profiling(profile);
@@ -101,7 +107,9 @@ void OpenClCloth::queue_call(cl_mem contacts) {
                           .rest_shapes = {rest_shapes_.get()},
                           .stretch_ceilings = {stretch_ceilings_.get()},
                           .contacts = {contacts},
-                          .rest_hinges = {rest_hinges_.get()}};
+                          .rest_hinges = {rest_hinges_.get()},
+                          .tether_anchors = {tether_anchors_.get()},
+                          .tether_lengths = {tether_lengths_.get()}};
     const host::EventHandle called(limiter_.enqueue(queue_.get(), buffers, parameters_));
 }
 

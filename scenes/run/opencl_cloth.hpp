@@ -66,6 +66,8 @@ private:
     host::BufferHandle rest_shapes_;
     host::BufferHandle stretch_ceilings_;
     host::BufferHandle rest_hinges_;
+    host::BufferHandle tether_anchors_;
+    host::BufferHandle tether_lengths_;
     std::vector<std::pair<std::string, host::EventHandle>> launches_;  // only with profile_
     Stats stats_{};
 };

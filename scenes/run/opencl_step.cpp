@@ -4,28 +4,18 @@
 #include "pipeline/geometry.hpp"
 #include "run/check_opencl.hpp"
 #include "run/opencl_program.hpp"
+#include "run/pinned_vertices.hpp"
 
 #include <algorithm>
 
 namespace apsl::scenes {
-namespace {
-
-std::vector<std::uint32_t> vertices_without_weight(const ClothState& cloth) {
-    std::vector<std::uint32_t> vertices;
-    for (std::uint32_t v = 0; v < cloth.inverse_masses.size(); ++v)
-        if (cloth.inverse_masses[v] == 0.0) vertices.push_back(v);
-    return vertices;
-}
-
-}  // namespace
-
 OpenClStep::OpenClStep(const OpenClDevice& device, const ClothState& cloth, const StrainLimiting& settings,
                        bool profile)
     : device_(device, cloth, settings, profile),
       time_step_(static_cast<double>(settings.parameters.time_step)),
       flight_(free_flight(settings.parameters)),
       origin_(origin_for(cloth.positions)),
-      pinned_(vertices_without_weight(cloth)),
+      pinned_(pinned_vertices(cloth)),
       states_(6 * pinned_.size()),
       positions_(cloth.positions.size()),
       velocities_(cloth.velocities.size()) {

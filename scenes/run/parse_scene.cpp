@@ -126,6 +126,7 @@ Integrator parse_integrator(SceneObject object) {
         StandAloneIntegrator stand_alone;
         stand_alone.damping = settings.number("damping", stand_alone.damping, Range::at_least(0.0));
         stand_alone.bending = settings.number("bending", stand_alone.bending, Range::at_least(0.0));
+        stand_alone.tethers = settings.number("tethers", stand_alone.tethers, Range::at_least(0.0));
         // What it had before, and no key of it now.
         if (settings.value().json->contains("bend_stiffness"))
             SceneObject(settings.value())
@@ -224,6 +225,7 @@ void make_stand_alone(Scene& scene, const SceneValue& integrator) {
     limiting.parameters.damping = static_cast<float>(stand_alone->damping);
     limiting.parameters.bending = static_cast<float>(stand_alone->bending);
     limiting.options.bends = stand_alone->bending > 0.0;
+    limiting.tethers = static_cast<float>(stand_alone->tethers);
     try {
         validate(limiting.options, limiting.parameters);
     } catch (const Error& error) {

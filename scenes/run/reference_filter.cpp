@@ -2,6 +2,9 @@
 #include "run/reference_filter.hpp"
 
 #include "run/rest_shapes.hpp"
+#include "run/scene_tethers.hpp"
+
+#include <utility>
 
 namespace apsl::scenes {
 
@@ -13,6 +16,11 @@ ReferenceFilter::ReferenceFilter(const ClothState& cloth, const StrainLimiting& 
     if (settings.options.stretch_ceiling_per_triangle)
         stretch_ceilings_.assign(settings.stretch_ceilings.begin(), settings.stretch_ceilings.end());
     if (settings.options.limits_stretch) rest_shapes_ = rest_shapes(cloth);
+    if (settings.options.tethers_per_vertex > 0) {
+        Tethers tethers = scene_tethers(cloth, settings);
+        tether_anchors_ = std::move(tethers.anchors);
+        tether_lengths_.assign(tethers.lengths.begin(), tethers.lengths.end());
+    }
     if (settings.options.bends) rest_hinges_ = reference::rest_hinges<double>(*cloth.topology, cloth.rest_positions);
 }
 
@@ -33,7 +41,9 @@ Stats ReferenceFilter::call(ClothState& cloth, std::span<double> end_positions, 
                       .stretch_ceilings = stretch_ceilings_,
                       .contacts = contacts,
                       .end_positions = end_positions,
-                      .rest_hinges = rest_hinges_},
+                      .rest_hinges = rest_hinges_,
+                      .tether_anchors = tether_anchors_,
+                      .tether_lengths = tether_lengths_},
                      parameters_);
     return limiter_.read_stats();
 }

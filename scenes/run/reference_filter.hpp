@@ -8,6 +8,7 @@
 #include <apsl/reference.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ private:
     std::vector<double> rest_shapes_;       // [4T] or empty
     std::vector<double> stretch_ceilings_;  // [T] or empty
     std::vector<double> rest_hinges_;       // [2H] or empty
+    std::vector<std::uint32_t> tether_anchors_;
+    std::vector<double> tether_lengths_;
     reference::StrainLimiter limiter_;
 };
 

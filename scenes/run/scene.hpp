@@ -83,6 +83,8 @@ struct BendingSpringsIntegrator {
 struct StandAloneIntegrator {
     double damping = 0.5;  ///< 1/s, ≥ 0
     double bending = 0.0;  ///< N·m, ≥ 0
+    /// ≥ 0; Options::tethers_per_vertex: tethers to the pins, this times as long as the way there at rest. 0: none.
+    double tethers = 0.0;
 };
 
 using Integrator =
@@ -93,6 +95,7 @@ struct StrainLimiting {
     Parameters parameters;                ///< time_step is the scene's
     std::vector<float> regularization;    ///< α ≥ 1, [T], with Options::regularization_per_triangle
     std::vector<float> stretch_ceilings;  ///< 0 or ≥ 1.01, [T]; read with Options::stretch_ceiling_per_triangle
+    float tethers = 0.0f;                 ///< as StandAloneIntegrator has it
 
     bool operator==(const StrainLimiting&) const = default;
 };

@@ -16,6 +16,7 @@
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
 #include "reference/stretch_limiting.hpp"
+#include "reference/tethers.hpp"
 
 #include "chebyshev_products.hpp"
 #include "fields.hpp"
@@ -62,6 +63,11 @@ void check(const Topology& topology, const Buffers<Real>& buffers, const Options
     check_values("contacts", "number", buffers.contacts, "a finite number", [](Real) { return true; });
     check_size("accelerations", buffers.accelerations.size(),
                options.acceleration_per_vertex ? 3 * topology.vertex_count() : 0);
+    const std::size_t tethers = std::size_t{options.tethers_per_vertex} * topology.vertex_count();
+    check_size("tether_anchors", buffers.tether_anchors.size(), tethers);
+    check_size("tether_lengths", buffers.tether_lengths.size(), tethers);
+    check_values("tether_lengths", "tether", buffers.tether_lengths, "a finite number >= 0 (m)",
+                 [](Real length) { return length >= Real(0); });
     check_values("accelerations", "number", buffers.accelerations, "a finite number (m/s2)", [](Real) { return true; });
 }
 
@@ -183,20 +189,31 @@ struct BasicStrainLimiter<Real>::Implementation {
         if (options.limits_stretch) stretches.hold_excess(moved);
         motion.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) motion[n] = time_step * buffers.velocities[n];
-        begin_part(buffers, parameters);
+        begin_part(buffers, parameters, 0);
         return standing(buffers);
     }
 
     /// The forces of a small step change the velocities, which move x_j on by it.
-    void begin_part(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
+    void begin_part(const Buffers<Real>& buffers, const ResolvedParameters& parameters, int part) {
         const auto time_step = static_cast<Real>(parameters.time_step),
                    parts = static_cast<Real>(parameters.small_steps);
         const FreePart<Real> free(parameters, buffers.accelerations);
+        if (options.tethers_per_vertex > 0)
+            keep_within_reach(buffers, {Real(1) / parts, static_cast<Real>(part + 1) / parts * time_step});
         if (options.bends) bending.find_velocity_changes(moved, motion, parameters);
         for (std::size_t n = 0; n < moved.size(); ++n) {
             if (options.integrates) motion[n] = time_step * free(motion[n] / time_step, n, buffers.inverse_masses);
             if (options.bends) motion[n] += time_step * bending.velocity_changes()[n];
             moved[n] += motion[n] / parts;
+        }
+    }
+
+    void keep_within_reach(const Buffers<Real>& buffers, const Move<Real>& move) {
+        for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i) {
+            if (!(buffers.inverse_masses[i] > Real(0))) continue;
+            const Eigen::Map<Vector3<Real>> x(moved.data() + 3 * i);
+            Eigen::Map<Vector3<Real>> step(motion.data() + 3 * i);
+            step = within_reach<Real>(x, step, move, buffers, options.tethers_per_vertex, i);
         }
     }
 
@@ -359,7 +376,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             if (options.limits_stretch) keep_velocities((carried - Real(1)) / count);
         }
         if (options.keeps_contacts) keep_contacts(buffers, parameters);
-        if (sub_step + 1 < parts) begin_part(buffers, parameters);
+        if (sub_step + 1 < parts) begin_part(buffers, parameters, sub_step + 1);
     }
 
     /// Where a whole step ends and with what velocities, `limited` or by acceleration and damping alone; false, and
