@@ -3,7 +3,7 @@
 #ifndef APSLK_ACCEPT_OR_REJECT_H
 #define APSLK_ACCEPT_OR_REJECT_H
 
-#include "bends.h"
+#include "acts_in_parts.h"
 #include "layout.h"
 #include "limits_stretch.h"
 
@@ -50,15 +50,15 @@ APSLK_INLINE float judged_rms(apslk_area_change change) {
 }
 
 // What is judged at x̃ + Δt ṽ, or what counts as no worse there.
-APSLK_INLINE float let_pass_bending(float initial) {
-    return APSLK_BENDS ? fmax(initial, APSLK_BENDING_LET_PASS) : initial;
+APSLK_INLINE float let_pass_in_parts(float initial) {
+    return APSLK_ACTS_IN_PARTS ? fmax(initial, APSLK_LET_PASS_IN_PARTS) : initial;
 }
 
 // The capped RMS decides, so that a single triangle does not cost the others their correction.
 APSLK_INLINE apslk_verdict judge(apslk_area_change initial, apslk_area_change change, float change_at_rest) {
-    const float initial_rms = let_pass_bending(judged_rms(initial)),
-                initial_capped_rms = let_pass_bending(initial.capped_rms);
-    const bool rose = judged_max(change) > let_pass_bending(judged_max(initial)) || judged_rms(change) > initial_rms ||
+    const float initial_rms = let_pass_in_parts(judged_rms(initial)),
+                initial_capped_rms = let_pass_in_parts(initial.capped_rms);
+    const bool rose = judged_max(change) > let_pass_in_parts(judged_max(initial)) || judged_rms(change) > initial_rms ||
                       change.capped_rms > initial_capped_rms;
     const bool at_rest = judged_max(initial) <= change_at_rest;
     apslk_verdict verdict;

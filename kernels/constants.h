@@ -10,6 +10,10 @@
 // A greatest area change up to which a cloth is at rest: 32-bit positions tell no better.
 #define APSLK_AT_REST 1e-5f
 
+// Bending and tethers act in small steps, not in the step without a limit: what falls or flies has no area change
+// there. Area changes and excesses of stretch up to this are not worse than those of that step.
+#define APSLK_LET_PASS_IN_PARTS 0.01f
+
 // The area that a small step asks of a triangle at most, as a multiple of its present area. A linearised step from
 // nearly no area overshoots without bound.
 #define APSLK_GREATEST_GROWTH 4.0f
@@ -63,9 +67,6 @@
 #define APSLK_BENDING_GREATEST 2.4f
 // T_d at zero of the polynomial: how far its values stay above zero, which damps what is stiffest.
 #define APSLK_BENDING_RIPPLE 1.1f
-// Area changes and excesses of stretch up to this are never worse than those of the step without a limit, which has no
-// bending in it: what falls or flies has none at all there.
-#define APSLK_BENDING_LET_PASS 0.01f
 // Bends are those of positions this far on in the part, by the velocities of its start: a damping.
 #define APSLK_BENDING_LEAD 0.25f
 

@@ -39,7 +39,7 @@ APSLK_KERNEL void judge_whole_step(__global apslk_parameters* parameters, __glob
     store_initial(states + c, stats + c, change, !(not_finite > 0.0f));
     if (not_finite > 0.0f) stats[c].status = APSLK_STATUS_DIVERGED;
     // Where nothing is to be limited there still is bending.
-    const bool met = !APSLK_BENDS && judged_max(change) <= parameters[c].target_area_change;
+    const bool met = !APSLK_ACTS_IN_PARTS && judged_max(change) <= parameters[c].target_area_change;
     if (not_finite > 0.0f || met) states[c].stopped = 1;
 #if APSLK_LIMITS_STRETCH
     const int more =

@@ -4,13 +4,9 @@
 #ifndef APSLK_TETHERS_H
 #define APSLK_TETHERS_H
 
+#include "acts_in_parts.h"
 #include "caller_vectors.h"
 #include "layout.h"
-
-// Tethers a vertex.
-#ifndef APSLK_TETHERS
-#define APSLK_TETHERS 0
-#endif
 
 // What the vertices of a cloth hang by: Buffers::tether_anchors, tether_lengths, positions and velocities.
 typedef struct {

@@ -96,16 +96,11 @@ APSLK_INLINE void begin_small_steps(apslk_cloth cloth, bool active, float time_s
     const float part = 1.0f / (float)small_steps;
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, vertex = vertex_order[place];
-        float3 velocity = load_velocity(velocities, vertex);
+        const float3 velocity = load_velocity(velocities, vertex);
         const float4 start = motion[place];
-#if APSLK_TETHERS
         const apslk_move first_part = {part, part * time_step};
-        if (start.w > 0.0f)
-            velocity = within_reach(start.xyz, time_step * velocity, first_part, tethers, cloth, vertex) / time_step;
-#else
-        (void)tethers;
-#endif
-        const float3 step = time_step * after_free_part(free, place, velocity, start.w);
+        float3 step = time_step * after_free_part(free, place, velocity, start.w);
+        if (start.w > 0.0f) step = within_reach(start.xyz, step, first_part, tethers, cloth, vertex);
         moved[place] = (float4)(fma((float3)(part), step, start.xyz), start.w);
         motion[place] = (float4)(step, start.w);
         total_correction[place] = (float4)(0.0f);
@@ -233,8 +228,8 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
             keep_in_small_step(&x, &step, &total, touched, i, small_step);
             if (onward > 0.0f) {
                 const apslk_move next_part = {onward, (float)(small_step.sub_step + 2) * onward * touched.time_step};
-                step.xyz = within_reach(x.xyz, step.xyz, next_part, tethers, cloth, touched.vertex_order[i]);
-                step = (float4)(after_free_part(free, i, step.xyz, given), 0.0f);
+                const float3 free_step = after_free_part(free, i, step.xyz, given);
+                step.xyz = within_reach(x.xyz, free_step, next_part, tethers, cloth, touched.vertex_order[i]);
             }
             motion[i] = (float4)(step.xyz, given);
 #else

@@ -37,6 +37,10 @@ struct FreePart {
     Real operator()(Real velocity, std::size_t n, std::span<const Real> inverse_masses) const {
         return inverse_masses[n / 3] > Real(0) ? kept * (velocity + gain(n)) : velocity;
     }
+    /// The velocity that becomes this one.
+    Real before(Real velocity, std::size_t n, std::span<const Real> inverse_masses) const {
+        return inverse_masses[n / 3] > Real(0) ? velocity / kept - gain(n) : velocity;
+    }
 };
 
 /// Of all small steps of a time step, with nothing else to move the cloth.

@@ -103,6 +103,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     std::vector<Real> unlimited;         // m/s, velocities where nothing is limited
     std::vector<Real> moved;             // x_j, corrected sub-step by sub-step
     std::vector<Real> motion;            // Δt times the velocity, in small steps with the corrections so far
+    std::vector<Real> before_forces;     // the motion, less what acceleration and damping made of it in a part
     std::vector<Real> total_correction;  // what the corrections so far add to the end of the step
     std::vector<Real> correction;
     std::vector<TriangleGeometry<Real>> geometry;
@@ -172,6 +173,9 @@ struct BasicStrainLimiter<Real>::Implementation {
         double capped_rms() const { return std::hypot(areas.capped_rms, stretches.capped_rms); }
     };
 
+    /// Whether there is more in small steps than limits: where nothing is to be limited there still is this.
+    bool acts_in_parts() const { return options.bends || options.tethers_per_vertex > 0; }
+
     /// At x_j.
     Standing standing(const Buffers<Real>& buffers) {
         Standing state{measure(buffers), {}};
@@ -193,19 +197,25 @@ struct BasicStrainLimiter<Real>::Implementation {
         return standing(buffers);
     }
 
-    /// The forces of a small step change the velocities, which move x_j on by it.
+    /// The forces of small step `part` change the velocities, tethers keep what they lead to within reach, and they
+    /// move x_j on.
     void begin_part(const Buffers<Real>& buffers, const ResolvedParameters& parameters, int part) {
         const auto time_step = static_cast<Real>(parameters.time_step),
                    parts = static_cast<Real>(parameters.small_steps);
         const FreePart<Real> free(parameters, buffers.accelerations);
+        if (options.integrates)
+            for (std::size_t n = 0; n < moved.size(); ++n)
+                motion[n] = time_step * free(motion[n] / time_step, n, buffers.inverse_masses);
         if (options.tethers_per_vertex > 0)
             keep_within_reach(buffers, {Real(1) / parts, static_cast<Real>(part + 1) / parts * time_step});
-        if (options.bends) bending.find_velocity_changes(moved, motion, parameters);
-        for (std::size_t n = 0; n < moved.size(); ++n) {
-            if (options.integrates) motion[n] = time_step * free(motion[n] / time_step, n, buffers.inverse_masses);
-            if (options.bends) motion[n] += time_step * bending.velocity_changes()[n];
-            moved[n] += motion[n] / parts;
+        if (options.bends) {
+            before_forces.resize(motion.size());
+            for (std::size_t n = 0; n < motion.size(); ++n)
+                before_forces[n] = time_step * free.before(motion[n] / time_step, n, buffers.inverse_masses);
+            bending.find_velocity_changes(moved, before_forces, parameters);
+            for (std::size_t n = 0; n < motion.size(); ++n) motion[n] += time_step * bending.velocity_changes()[n];
         }
+        for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += motion[n] / parts;
     }
 
     void keep_within_reach(const Buffers<Real>& buffers, const Move<Real>& move) {
@@ -425,7 +435,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     /// decides, so that a single triangle does not cost the others their correction. Where the result stands and the
     /// greatest rose, the triangle that has it is named.
     bool is_worse(const Standing& initial, const Standing& change, std::span<const Real> rest_areas) {
-        const double passed = options.bends ? double{APSLK_BENDING_LET_PASS} : 0.0;
+        const double passed = acts_in_parts() ? double{APSLK_LET_PASS_IN_PARTS} : 0.0;
         const double initial_rms = std::max(initial.rms(), passed),
                      initial_capped_rms = std::max(initial.capped_rms(), passed);
         const bool rose = change.max() > std::max(initial.max(), passed) || change.rms() > initial_rms ||
@@ -502,8 +512,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         Standing change = initial;
         bool all_converged = true;
         const auto target = static_cast<double>(parameters.target_area_change);
-        // Where nothing is to be limited there still is bending.
-        const bool met = !options.bends && initial.max() <= target;
+        const bool met = !acts_in_parts() && initial.max() <= target;
         masses.start(buffers.inverse_masses);
         if (parts > 0 && !met) change = start_small_steps(buffers, parameters);
         for (;;) {
@@ -575,12 +584,12 @@ std::size_t BasicStrainLimiter<Real>::scratch_bytes() const {
     const auto entries = static_cast<std::size_t>(i.G.nonZeros());
     const auto rows = static_cast<std::size_t>(i.G.rows());
     return entries * (sizeof(Real) + sizeof(int)) + (rows + 1) * sizeof(int) + bytes(i.shared) + bytes(i.predicted) +
-           bytes(i.unlimited) + bytes(i.moved) + bytes(i.motion) + bytes(i.total_correction) + bytes(i.correction) +
-           bytes(i.geometry) + bytes(i.area_excess) + bytes(i.start_error) + bytes(i.masses.inverse) +
-           bytes(i.masses.tension) + bytes(i.masses.stiffness) + bytes(i.lambda) + bytes(i.effective_regularization) +
-           i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) + bytes(i.scratch.inverse_diagonal) +
-           bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) + bytes(i.scratch.direction) +
-           bytes(i.scratch.product) + bytes(i.direction_bounds) + bytes(i.bound) +
+           bytes(i.unlimited) + bytes(i.moved) + bytes(i.motion) + bytes(i.before_forces) + bytes(i.total_correction) +
+           bytes(i.correction) + bytes(i.geometry) + bytes(i.area_excess) + bytes(i.start_error) +
+           bytes(i.masses.inverse) + bytes(i.masses.tension) + bytes(i.masses.stiffness) + bytes(i.lambda) +
+           bytes(i.effective_regularization) + i.kept.size() * static_cast<std::size_t>(rows) * sizeof(Real) +
+           bytes(i.scratch.inverse_diagonal) + bytes(i.scratch.residual) + bytes(i.scratch.preconditioned) +
+           bytes(i.scratch.direction) + bytes(i.scratch.product) + bytes(i.direction_bounds) + bytes(i.bound) +
            bytes(i.chebyshev_scratch.inverse_bound) + bytes(i.chebyshev_scratch.residual) +
            bytes(i.chebyshev_scratch.step) + bytes(i.chebyshev_scratch.product) + i.stretches.bytes() +
            i.bending.bytes();

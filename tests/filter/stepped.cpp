@@ -25,7 +25,12 @@ Ended step_on_device(const MovingCloth& cloth, const Options& options, const Par
 Ended step_with_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
     reference::StrainLimiter limiter(cloth.topology, options);
     Ended end{cloth.positions, cloth.velocities, {}};
-    std::span<const double> shapes, contacts, hinges, accelerations;
+    std::span<const double> shapes, contacts, hinges, accelerations, lengths;
+    std::span<const std::uint32_t> anchors;
+    if (options.tethers_per_vertex > 0) {
+        anchors = cloth.tether_anchors;
+        lengths = cloth.tether_lengths;
+    }
     if (options.limits_stretch) shapes = cloth.rest_shapes;
     if (options.keeps_contacts) contacts = cloth.contacts;
     if (options.bends) hinges = cloth.rest_hinges;
@@ -39,7 +44,9 @@ Ended step_with_reference(const MovingCloth& cloth, const Options& options, cons
                      .contacts = contacts,
                      .end_positions = end.positions,
                      .rest_hinges = hinges,
-                     .accelerations = accelerations},
+                     .accelerations = accelerations,
+                     .tether_anchors = anchors,
+                     .tether_lengths = lengths},
                     parameters);
     end.stats = limiter.read_stats();
     return end;

@@ -103,6 +103,18 @@ MovingCloth moving_cloth(const Mesh& mesh, std::uint32_t seed) {
     round_to_float(cloth.contacts);
     for (std::size_t n = 0; n < cloth.positions.size(); ++n) cloth.accelerations.push_back(number(-20.0, 20.0));
     round_to_float(cloth.accelerations);
+    for (std::size_t t = 0; t < MovingCloth::tethers * cloth.inverse_masses.size(); ++t) {
+        const std::size_t v = t / MovingCloth::tethers, pin = t % MovingCloth::tethers * (mesh.vertex_count() / 2);
+        double squared = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto end = [&](std::size_t n) { return cloth.positions[n] + cloth.velocities[n] / steps_per_second; };
+            squared += std::pow(end(3 * v + k) - end(3 * pin + k), 2);
+        }
+        cloth.tether_anchors.push_back(t % 7 == 3 ? std::numeric_limits<std::uint32_t>::max()
+                                                  : static_cast<std::uint32_t>(pin));
+        cloth.tether_lengths.push_back(t % 5 == 2 ? 0.0 : std::sqrt(squared) * number(0.85, 1.1));
+    }
+    round_to_float(cloth.tether_lengths);
     return cloth;
 }
 
@@ -114,6 +126,23 @@ Options with_layout(Options options, const Options& layout) {
     options.inverse_mass_stride = layout.inverse_mass_stride;
     return options;
 }
+
+namespace {
+
+// Numbered as the vertices of all cloths follow one another.
+std::vector<std::uint32_t> anchors_of(std::span<const MovingCloth> cloths, std::size_t offset) {
+    std::vector<std::uint32_t> anchors = poison<std::uint32_t>(offset);
+    std::uint32_t before = 0;
+    for (const MovingCloth& cloth : cloths) {
+        const auto count = static_cast<std::uint32_t>(cloth.inverse_masses.size());
+        for (const std::uint32_t anchor : cloth.tether_anchors)
+            anchors.push_back(anchor < count ? before + anchor : anchor);
+        before += count;
+    }
+    return anchors;
+}
+
+}  // namespace
 
 CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options& the_options, std::size_t the_offset)
     : options(the_options),
@@ -128,7 +157,10 @@ CallerBuffers::CallerBuffers(std::span<const MovingCloth> cloths, const Options&
       stretch_ceilings(placed(cloths, &MovingCloth::stretch_ceilings, {1, 1}, offset)),
       contacts(placed(cloths, &MovingCloth::contacts, {8, 8}, offset)),
       rest_hinges(placed(cloths, &MovingCloth::rest_hinges, {2, 2}, offset)),
-      accelerations(placed(cloths, &MovingCloth::accelerations, layout_of_positions(options), offset)) {
+      accelerations(placed(cloths, &MovingCloth::accelerations, layout_of_positions(options), offset)),
+      tether_lengths(
+          placed(cloths, &MovingCloth::tether_lengths, {MovingCloth::tethers, MovingCloth::tethers}, offset)),
+      tether_anchors(anchors_of(cloths, offset)) {
 }
 
 Buffers CallerBuffers::views() const {
@@ -144,6 +176,10 @@ Buffers CallerBuffers::views() const {
     if (options.keeps_contacts) views.contacts = {contacts.get(), bytes};
     if (options.bends) views.rest_hinges = {rest_hinges.get(), bytes};
     if (options.acceleration_per_vertex) views.accelerations = {accelerations.get(), bytes};
+    if (options.tethers_per_vertex > 0) {
+        views.tether_anchors = {tether_anchors.get(), bytes};
+        views.tether_lengths = {tether_lengths.get(), bytes};
+    }
     return views;
 }
 
@@ -167,8 +203,9 @@ std::vector<float> without_gaps(const std::vector<float>& all, const Layout& lay
 
 std::vector<float> CallerBuffers::read_velocities() const {
     for (const auto* array : {&positions, &inverse_masses, &rest_areas, &regularization, &rest_shapes,
-                              &stretch_ceilings, &contacts, &rest_hinges, &accelerations})
+                              &stretch_ceilings, &contacts, &rest_hinges, &accelerations, &tether_lengths})
         array->read();
+    tether_anchors.read();
     return without_gaps(velocities.read(), layout_of_velocities(options), offset, vertex_count, "velocities");
 }
 

@@ -29,6 +29,12 @@ struct MovingCloth {
     /// most, every fifth vertex without one.
     std::vector<double> contacts;
     std::vector<double> accelerations;  ///< m/s², [3V], up to 20 either way
+    /// `tethers` of each vertex, [2V], to its pins: about as long as they are apart at the end of the step, every fifth
+    /// of length 0, every seventh with an anchor that is no vertex.
+    std::vector<std::uint32_t> tether_anchors;
+    std::vector<double> tether_lengths;  ///< m
+
+    static constexpr std::uint32_t tethers = 2;
 };
 
 /// The mesh at rest where it lies, wavy now and about to be stretched by some 15 %: unequal masses, two pins.
@@ -46,7 +52,8 @@ struct CallerBuffers {
     std::size_t offset;
     std::size_t vertex_count;
     DeviceArray<float> positions, velocities, inverse_masses, rest_areas, regularization, rest_shapes, stretch_ceilings,
-        contacts, rest_hinges, accelerations;
+        contacts, rest_hinges, accelerations, tether_lengths;
+    DeviceArray<std::uint32_t> tether_anchors;
 
     Buffers views() const;
     /// [3V] of all cloths, without stride and offset. Checks the guard bands of every buffer.

@@ -128,6 +128,10 @@ constexpr Options step_with_all{.execution = Execution::many_groups,
                                 .keeps_contacts = true,
                                 .bends = true,
                                 .acceleration_per_vertex = true};
+constexpr Options step_tethers{.execution = Execution::many_groups,
+                               .limits_stretch = true,
+                               .integrates = true,
+                               .tethers_per_vertex = MovingCloth::tethers};
 constexpr Options one_group{.execution = Execution::one_group};
 
 Scenario one_cloth(std::string name, const Options& options, const Parameters& parameters, int calls = 1) {
@@ -189,6 +193,8 @@ std::vector<Scenario> small_scenarios() {
         of("step_bending_64", groups_of_64(step_bending), bending(falling(with_ceiling(p))), small()),
         one_cloth("step_accelerations_arrays", structure_of_arrays(step_accelerations), falling(p)),
         of("step_with_all_64", groups_of_64(step_with_all), bending(falling(growing(p))), small()),
+        one_cloth("step_tethers_arrays", structure_of_arrays(step_tethers), falling(growing(p))),
+        of("step_tethers_64", groups_of_64(step_tethers), falling(growing(p)), small()),
         one_cloth("one_group", one_group, short_solve(p)),
         of("one_group_xyzw_64", groups_of_64(xyzw(one_group)), small_steps(short_solve(p)), small()),
         of("one_group_arrays_64", groups_of_64(structure_of_arrays(one_group)), short_solve(p), small()),

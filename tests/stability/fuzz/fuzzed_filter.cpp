@@ -33,12 +33,15 @@ std::vector<Filtered> DeviceFilter::call(const std::vector<MovingCloth>& cloths,
                                          std::span<const Parameters> parameters) {
     const CallerBuffers buffers(cloths, options_, offset_);
     std::vector<const DeviceArray<float>*> inputs{
-        &buffers.inverse_masses,   &buffers.rest_areas, &buffers.regularization, &buffers.rest_shapes,
-        &buffers.stretch_ceilings, &buffers.contacts,   &buffers.rest_hinges,    &buffers.accelerations};
+        &buffers.inverse_masses, &buffers.rest_areas,       &buffers.regularization,
+        &buffers.rest_shapes,    &buffers.stretch_ceilings, &buffers.contacts,
+        &buffers.rest_hinges,    &buffers.accelerations,    &buffers.tether_lengths};
     if (!options_.integrates) inputs.push_back(&buffers.positions);
     std::vector<std::vector<float>> given;
     for (const auto* input : inputs) given.push_back(input->read());
+    const std::vector<std::uint32_t> anchors = buffers.tether_anchors.read();
     const std::vector<Stats> stats = filter(*limiter_, buffers, parameters);
+    if (!same_bytes(buffers.tether_anchors.read(), anchors)) throw std::runtime_error("an input buffer was written to");
     for (std::size_t n = 0; n < given.size(); ++n)
         if (!same_bytes(inputs[n]->read(), given[n])) throw std::runtime_error("an input buffer was written to");
 
@@ -79,13 +82,16 @@ std::vector<Filtered> ReferenceFilter<Real>::call(const std::vector<MovingCloth>
         const std::vector<Real> contacts = real_where(options_.keeps_contacts, cloth.contacts);
         const std::vector<Real> hinges = real_where(options_.bends, cloth.rest_hinges);
         const std::vector<Real> accelerations = real_where(options_.acceleration_per_vertex, cloth.accelerations);
+        const std::vector<Real> lengths = real_where(options_.tethers_per_vertex > 0, cloth.tether_lengths);
+        std::span<const std::uint32_t> anchors;
+        if (options_.tethers_per_vertex > 0) anchors = cloth.tether_anchors;
         std::vector<Real> velocities = real(cloth.velocities);
         std::vector<Real> ends = options_.integrates ? positions : std::vector<Real>{};
         const bool refused = refused_by_reference(cloth);
         try {
-            limiters_[n].enqueue(
-                {positions, velocities, masses, areas, alpha, shapes, ceilings, contacts, ends, hinges, accelerations},
-                parameters[n]);
+            limiters_[n].enqueue({positions, velocities, masses, areas, alpha, shapes, ceilings, contacts, ends, hinges,
+                                  accelerations, anchors, lengths},
+                                 parameters[n]);
             if (refused) throw std::runtime_error("took what it has to refuse");
         } catch (const Error& error) {
             if (!refused) throw;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t block_size = 100;
 // A driver compiles kernels for seconds and keeps them: so many sets of options at most.
-constexpr std::uint64_t option_sets = 19;
+constexpr std::uint64_t option_sets = 20;
 // Room for a component's run where x, y and z lie apart: more than the vertices of all meshes of a block.
 constexpr std::uint32_t most_vertices = 2048;
 
@@ -44,7 +44,8 @@ Options random_options(std::uint64_t number) {
         options.acceleration_per_vertex = true;
         return options;
     }
-    if (number >= 15) {  // a stretch ceiling, for all triangles or one for each, or in a whole step with bending
+    if (number >= 15) {  // a stretch ceiling, for all triangles or one for each, in a whole step with bending, or in
+                         // one with tethers
         options.matrix = Matrix::consistent;
         options.apply = Apply::matrix_free;
         options.execution = Execution::many_groups;
@@ -52,7 +53,9 @@ Options random_options(std::uint64_t number) {
         options.warm_start_sub_steps = 0;
         options.limits_stretch = true;
         options.stretch_ceiling_per_triangle = number == 16;
-        options.integrates = options.bends = number == 18;
+        options.integrates = number >= 18;
+        options.bends = number == 18;
+        if (number == 19) options.tethers_per_vertex = MovingCloth::tethers;
     }
     return options;
 }

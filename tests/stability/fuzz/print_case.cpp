@@ -45,6 +45,10 @@ void print(const MovingCloth& cloth, const Options& options, std::ostream& out) 
         if (options.acceleration_per_vertex)
             for (std::size_t k = 0; k < 3; ++k)
                 out << (k == 0 ? ", acceleration " : " ") << cloth.accelerations[3 * v + k];
+        for (std::size_t k = 0; k < options.tethers_per_vertex; ++k) {
+            const std::size_t t = options.tethers_per_vertex * v + k;
+            out << ", tether to " << cloth.tether_anchors[t] << " of " << cloth.tether_lengths[t];
+        }
         out << '\n';
     }
     for (std::size_t h = 0; options.bends && 2 * h < cloth.rest_hinges.size(); ++h)

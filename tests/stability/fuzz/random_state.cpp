@@ -116,6 +116,15 @@ void push(Random random, MovingCloth& cloth) {
         cloth.accelerations.push_back(greatest * random.number(-1.0, 1.0));
 }
 
+// Likewise: to any vertex, pinned or not, a few to none.
+void tie(Random random, MovingCloth& cloth, double size) {
+    const std::size_t count = cloth.inverse_masses.size();
+    for (std::size_t t = 0; t < MovingCloth::tethers * count; ++t) {
+        cloth.tether_anchors.push_back(static_cast<std::uint32_t>(random.below(count + 2)));
+        cloth.tether_lengths.push_back(random.one_of({0.0, 1e-6, 0.1, 0.5, 1.0, 2.0, 1e20}) * size);
+    }
+}
+
 }  // namespace
 
 MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const Topology> topology) {
@@ -146,13 +155,14 @@ MovingCloth random_state(Random& random, const Mesh& mesh, std::shared_ptr<const
     describe_stretch_limits(random, cloth);
     touch(random, cloth, size);
     push(random, cloth);
+    tie(random, cloth, size);
     if (random.chance(0.05)) {
         double& rest_area = cloth.rest_areas[random.below(cloth.rest_areas.size())];
         rest_area = random.one_of({0.0, -1.0, 1e-42, 1e-20, 1e20});
     }
-    for (auto* numbers :
-         {&cloth.positions, &cloth.velocities, &cloth.inverse_masses, &cloth.rest_areas, &cloth.regularization,
-          &cloth.rest_shapes, &cloth.stretch_ceilings, &cloth.contacts, &cloth.rest_hinges, &cloth.accelerations})
+    for (auto* numbers : {&cloth.positions, &cloth.velocities, &cloth.inverse_masses, &cloth.rest_areas,
+                          &cloth.regularization, &cloth.rest_shapes, &cloth.stretch_ceilings, &cloth.contacts,
+                          &cloth.rest_hinges, &cloth.accelerations, &cloth.tether_lengths})
         round_to_float(*numbers);
     return cloth;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -193,18 +194,26 @@ private:
             smaller.inverse_masses.clear();
             smaller.contacts.clear();
             smaller.accelerations.clear();
+            smaller.tether_anchors.clear();
+            smaller.tether_lengths.clear();
             const auto offsets = cloth.topology->corner_offsets();
             for (std::size_t v = 0; v < place.size(); ++v) {
                 if (offsets[v] == offsets[v + 1]) continue;
                 place[v] = static_cast<std::uint32_t>(smaller.inverse_masses.size());
                 smaller.inverse_masses.push_back(cloth.inverse_masses[v]);
                 for (std::size_t k = 0; k < 8; ++k) smaller.contacts.push_back(cloth.contacts[8 * v + k]);
+                for (std::size_t t = MovingCloth::tethers * v; t < MovingCloth::tethers * (v + 1); ++t) {
+                    smaller.tether_anchors.push_back(cloth.tether_anchors[t]);
+                    smaller.tether_lengths.push_back(cloth.tether_lengths[t]);
+                }
                 for (std::size_t k = 0; k < 3; ++k) {
                     smaller.positions.push_back(cloth.positions[3 * v + k]);
                     smaller.velocities.push_back(cloth.velocities[3 * v + k]);
                     smaller.accelerations.push_back(cloth.accelerations[3 * v + k]);
                 }
             }
+            for (std::uint32_t& anchor : smaller.tether_anchors)
+                anchor = anchor < place.size() ? place[anchor] : std::numeric_limits<std::uint32_t>::max();
             std::vector<Triangle> triangles(cloth.topology->triangles().begin(), cloth.topology->triangles().end());
             for (Triangle& triangle : triangles)
                 for (std::uint32_t& v : triangle) v = place[v];

@@ -23,6 +23,8 @@ struct Altitude {
     std::vector<double> inverse_masses{0, 0, 2};
     std::vector<double> rest_areas{0.5};
     std::vector<double> accelerations = {};
+    std::vector<std::uint32_t> tether_anchors = {};
+    std::vector<double> tether_lengths = {};
 
     Stats step(const Parameters& parameters, const Options& options = integrating) {
         StrainLimiter limiter(topology, options);
@@ -32,7 +34,9 @@ struct Altitude {
                          .rest_areas = rest_areas,
                          .regularization = {},
                          .end_positions = positions,
-                         .accelerations = accelerations},
+                         .accelerations = accelerations,
+                         .tether_anchors = tether_anchors,
+                         .tether_lengths = tether_lengths},
                         parameters);
         return limiter.read_stats();
     }
@@ -120,6 +124,52 @@ TEST_CASE("a whole step: it makes no difference whether all share an acceleratio
     }
 }
 
+TEST_CASE("a whole step: a tether keeps its vertex within reach of a pin, by hand") {
+    // Two parts of 0.25 s; nothing is limited. The vertex starts 1 m above its anchor, which moves along the line to
+    // it, with a tether of 1.05 m. Held in a part, it ends that part 1.05 m from where the anchor is then.
+    struct Case {
+        double speed, anchor_speed, end, end_speed;
+    };
+    for (const auto& [speed, anchor_speed, end, end_speed] :
+         {Case{0.1, 0.0, 1.05, 0.1},      // 1.025, 1.05: as far as it reaches
+          Case{0.4, 0.0, 1.05, 0.0},      // 1.05 at 0.2 m/s; held there
+          Case{0.4, 0.08, 1.09, 0.08},    // 1.07 at 0.28 m/s; 1.09
+          Case{0.0, -0.8, 0.65, -0.8},    // drawn after its anchor: 0.85 at −0.6 m/s; 0.65
+          Case{-1.0, 0.0, 0.5, -1.0}}) {  // towards it: nothing holds
+        Altitude triangle;
+        triangle.positions = {0.5, 0, 0, 1, 0, 0, 0.5, 1, 0};
+        triangle.rest_areas = {0.0};
+        triangle.velocities[7] = speed;
+        triangle.velocities[1] = anchor_speed;
+        triangle.tether_anchors = {0, 0, 1, 1, 0, 1};
+        triangle.tether_lengths = {0.1, 0.1, 0.1, 0.1, 1.05, 0.0};  // of a pin none counts, nor one of length 0
+        triangle.step(by_hand(3), {.integrates = true, .tethers_per_vertex = 2});
+        CAPTURE(speed, anchor_speed);
+        CHECK(triangle.positions[6] == 0.5);
+        CHECK(triangle.positions[7] == Approx(end));
+        CHECK(triangle.velocities[7] == Approx(end_speed).margin(1e-12));
+        CHECK(triangle.positions[1] == Approx(0.5 * anchor_speed));
+        CHECK(triangle.velocities[1] == anchor_speed);
+    }
+}
+
+TEST_CASE("a whole step: what hangs by a tether at rest stays at rest, however many parts there are") {
+    for (const int sub_steps : {2, 10, 40}) {
+        Altitude triangle;
+        triangle.rest_areas = {0.0};
+        triangle.tether_anchors = {0, 0, 0};
+        triangle.tether_lengths = {0.0, 0.0, std::hypot(0.5, 1.0)};
+        Parameters parameters = by_hand(sub_steps);
+        parameters.time_step = 1.0f / 60.0f;
+        parameters.acceleration = {0.5f * 9.81f, 9.81f, 0.0f};
+        for (int step = 0; step < 20; ++step) triangle.step(parameters, {.integrates = true, .tethers_per_vertex = 1});
+        CAPTURE(sub_steps);
+        CHECK(triangle.positions[6] == Approx(0.5));
+        CHECK(triangle.positions[7] == Approx(1.0));
+        CHECK(std::abs(triangle.velocities[7]) < 1e-6);
+    }
+}
+
 TEST_CASE("a whole step: what hangs at rest stays at rest, however many parts there are") {
     // Gravity draws the vertex away from its edge; the area holds it. α is a compliance: what it yields is known.
     for (const int sub_steps : {2, 10, 40}) {
@@ -168,6 +218,18 @@ TEST_CASE("a whole step: what it needs") {
           "integrates is on, which needs execution many_groups");
     CHECK(message({}, {.positions_only = true, .integrates = true}) ==
           "integrates is on, which needs velocities: positions_only is on");
+    CHECK(message({}, {.tethers_per_vertex = 1}) == "tethers_per_vertex is 1, which needs integrates");
+    CHECK(message({}, {.integrates = true, .tethers_per_vertex = 17}) ==
+          "tethers_per_vertex is 17, expected a whole number >= 0 and <= 16");
+    CHECK_THROWS_WITH(triangle.step({}, {.integrates = true, .tethers_per_vertex = 2}),
+                      "tether_anchors holds 0 numbers, expected 6");
+    triangle.tether_anchors.assign(3, 0);
+    triangle.tether_lengths = {0, -1, 0};
+    CHECK_THROWS_WITH(triangle.step({}, {.integrates = true, .tethers_per_vertex = 1}),
+                      "tether_lengths of tether 1 is -1, expected a finite number >= 0 (m)");
+    CHECK_THROWS_WITH(triangle.step({}, integrating), "tether_anchors holds 3 numbers, expected 0");
+    triangle.tether_anchors.clear();
+    triangle.tether_lengths.clear();
     CHECK(message({}, {.acceleration_per_vertex = true}) == "acceleration_per_vertex is on, which needs integrates");
     CHECK_THROWS_WITH(triangle.step({}, accelerating), "accelerations holds 0 numbers, expected 9");
     triangle.accelerations.assign(9, 0.0);
