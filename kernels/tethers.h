@@ -31,40 +31,79 @@ typedef struct {
 
 // On to the next part of a step.
 typedef struct {
-    float share;  // of the step
-    float time;   // s, from the start of the step to the end of the part
+    float share;      // of the step
+    float time;       // s, from the start of the step to the end of the part
+    float time_step;  // s
 } apslk_move;
 
-// Δt times the velocity of a vertex at x: as given, or one that leads no further than its tethers reach. An anchor goes
-// straight on with the velocity that it has at the start of the step, as a pinned vertex does; one outside of the cloth
-// holds nothing.
-APSLK_INLINE float3 within_reach(float3 x, float3 motion, apslk_move move, apslk_tethers tethers, apslk_cloth cloth,
-                                 uint vertex) {
+// Where anchors are at the end of a part: they go straight on with the velocities that they have at the start of the
+// step, as pinned vertices do.
+APSLK_INLINE float3 anchor_at(apslk_tethers tethers, uint anchor, float time) {
+    return predicted_position(load_position(tethers.positions, anchor), load_velocity(tethers.velocities, anchor),
+                              time);
+}
+
 #if APSLK_TETHERS
-    float3 end = fma((float3)(move.share), motion, x);
+// How long a tether is where this share of the step is left. A vertex that starts the step out of reach is led back
+// over it.
+APSLK_INLINE float length_in_part(apslk_tethers tethers, ulong tether, uint vertex, float share_left) {
+    const float length = tethers.lengths[tether];
+    if (!(length > 0.0f)) return 0.0f;
+    const float3 apart =
+        load_position(tethers.positions, vertex) - load_position(tethers.positions, tethers.anchors[tether]);
+    return length + share_left * fmax(sqrt(dot(apart, apart)) - length, 0.0f);
+}
+
+// How much longer the tethers of a vertex are than given, at least 1: where anchors are further apart than two tethers
+// together reach, nothing could be within reach of both.
+APSLK_INLINE float tether_stretch(const float3* at, const float* lengths) {
+    float stretch = 1.0f;
+    for (uint k = 1; k < APSLK_TETHERS; ++k)
+        for (uint j = 0; j < k; ++j) {
+            if (!(lengths[j] > 0.0f && lengths[k] > 0.0f)) continue;
+            const float3 apart = at[k] - at[j];
+            stretch = fmax(stretch, sqrt(dot(apart, apart)) / (lengths[j] + lengths[k]));
+        }
+    return stretch;
+}
+#endif
+
+// A vertex and Δt times its velocity, such that the part ends within reach of its anchors and no faster away from them
+// than they go. An anchor outside of the cloth holds nothing.
+APSLK_INLINE void keep_within_reach(float3* x, float3* motion, apslk_move move, apslk_tethers tethers,
+                                    apslk_cloth cloth, uint vertex) {
+#if APSLK_TETHERS
+    const ulong first = (ulong)vertex * APSLK_TETHERS;
+    float3 at[APSLK_TETHERS];
+    float lengths[APSLK_TETHERS];
+    for (uint k = 0; k < APSLK_TETHERS; ++k) {
+        const uint anchor = tethers.anchors[first + k];
+        const bool holds = anchor - cloth.vertex_begin < cloth.vertex_count;
+        lengths[k] = holds ? length_in_part(tethers, first + k, vertex, 1.0f - move.time / move.time_step) : 0.0f;
+        at[k] = holds ? anchor_at(tethers, anchor, move.time) : (float3)(0.0f);
+    }
+    const float stretch = tether_stretch(at, lengths);
+    float3 end = fma((float3)(move.share), *motion, *x);
     bool held = false;
     for (uint k = 0; k < APSLK_TETHERS; ++k) {
-        const ulong t = (ulong)vertex * APSLK_TETHERS + k;
-        const uint anchor = tethers.anchors[t];
-        const float length = tethers.lengths[t];
-        if (!(length > 0.0f) || anchor - cloth.vertex_begin >= cloth.vertex_count) continue;
-        const float3 at = predicted_position(load_position(tethers.positions, anchor),
-                                             load_velocity(tethers.velocities, anchor), move.time);
-        const float3 from = end - at;
+        const float reach = stretch * lengths[k];
+        const float3 from = end - at[k];
         const float squared = dot(from, from);
-        if (squared > length * length) {
-            end = at + length / sqrt(squared) * from;
-            held = true;
-        }
+        if (!(reach > 0.0f && squared > reach * reach)) continue;
+        const float3 away = from / sqrt(squared);
+        const float3 anchor_motion = move.time_step * load_velocity(tethers.velocities, tethers.anchors[first + k]);
+        end = at[k] + reach * away;
+        *motion -= fmax(dot(*motion - anchor_motion, away), 0.0f) * away;
+        held = true;
     }
-    return held ? (end - x) / move.share : motion;
+    if (held) *x = end - move.share * *motion;
 #else
     (void)x;
+    (void)motion;
     (void)move;
     (void)tethers;
     (void)cloth;
     (void)vertex;
-    return motion;
 #endif
 }
 

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string_view>
 #include <tuple>
@@ -55,6 +56,8 @@ static_assert(static_cast<float>(least_stretch_ceiling) == APSLK_LEAST_STRETCH_C
 
 inline constexpr Bounds any_whole{.least = 0.0};
 inline constexpr Bounds at_least_one{.least = 1.0};
+/// A kernel holds as many anchors in registers.
+inline constexpr std::uint32_t most_tethers = 4;
 /// The host queues each of them.
 inline constexpr Bounds sub_step_count{.least = 0.0, .greatest = 10000.0};
 
@@ -146,7 +149,7 @@ inline constexpr std::tuple option_fields{
     Field{"acceleration_per_vertex", &Options::acceleration_per_vertex, Bounds{}, "",
           "Each vertex has an acceleration beside the one of all, given with every call. It requires integrates.",
           false},
-    Field{"tethers_per_vertex", &Options::tethers_per_vertex, Bounds{.least = 0.0, .greatest = 16.0}, "",
+    Field{"tethers_per_vertex", &Options::tethers_per_vertex, Bounds{.least = 0.0, .greatest = most_tethers}, "",
           "Tethers of each vertex to pinned vertices, given with every call. It requires integrates.", false},
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "fields.hpp"
 #include "finite.hpp"
 #include "invalid.hpp"
 
@@ -156,7 +157,9 @@ Tethers tethers_to_pins(const Topology& topology, std::span<const float> rest_po
         if (!is_finite(rest_positions[n]))
             invalid("rest_positions of vertex " + std::to_string(n / 3) +
                     " is not finite, expected finite numbers (m)");
-    if (per_vertex == 0) invalid("per_vertex is 0, expected a whole number >= 1");
+    if (per_vertex == 0 || per_vertex > most_tethers)
+        invalid("per_vertex is " + std::to_string(per_vertex) + ", expected a whole number from 1 to " +
+                std::to_string(most_tethers));
     if (!is_finite(stretch) || !(stretch > 0.0f))
         invalid("stretch is " + std::to_string(stretch) + ", expected a finite number > 0");
 
@@ -169,7 +172,10 @@ Tethers tethers_to_pins(const Topology& topology, std::span<const float> rest_po
         if (pieces[v] != none) continue;
         for (std::size_t k = 0; k < found[v].size(); ++k) {
             tethers.anchors[per_vertex * v + k] = found[v][k].anchor;
-            tethers.lengths[per_vertex * v + k] = stretch * static_cast<float>(found[v][k].length);
+            // A way that no float holds is no tether.
+            const double length = static_cast<double>(stretch) * found[v][k].length;
+            if (length <= static_cast<double>(std::numeric_limits<float>::max()))
+                tethers.lengths[per_vertex * v + k] = static_cast<float>(length);
         }
     }
     return tethers;

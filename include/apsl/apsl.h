@@ -115,7 +115,7 @@ typedef struct apsl_options {
     int32_t keeps_contacts;               /**< not 0: a contacts buffer is given with every call */
     int32_t bends;                        /**< not 0: hinges resist bending; rest hinges are given with every call */
     int32_t acceleration_per_vertex;      /**< not 0: an accelerations buffer is given with every call */
-    uint32_t tethers_per_vertex;          /**< 0 to 16; with integrates: tether buffers are given with every call */
+    uint32_t tethers_per_vertex;          /**< 0 to 4; with integrates: tether buffers are given with every call */
     uint32_t reserved[4];                 /**< zeros; room for fields to come, so that the size stays */
 } apsl_options;
 

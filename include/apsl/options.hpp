@@ -97,7 +97,7 @@ struct Options {
     /// Each vertex has an acceleration of its own beside Parameters::acceleration, as of wind (docs/formulation.md, A
     /// whole step): Buffers::accelerations is given with every call. Needs integrates.
     bool acceleration_per_vertex = false;
-    /// Tethers a vertex, up to 16: it is kept within a length of each of its anchors, which are pinned vertices, in
+    /// Tethers a vertex, up to 4: it is kept within a length of each of its anchors, which are pinned vertices, in
     /// every small step but the last (docs/formulation.md, Tethers). Buffers::tether_anchors and tether_lengths are
     /// given with every call. Needs integrates.
     std::uint32_t tethers_per_vertex = 0;

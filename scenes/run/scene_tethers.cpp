@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/scene_tethers.hpp"
 
+#include "fields.hpp"
 #include "run/pinned_vertices.hpp"
 
 #include <apsl/reference.hpp>
@@ -24,8 +25,8 @@ double rest_length_factor(const ClothState& cloth) {
 }  // namespace
 
 std::uint32_t tethers_per_vertex(const ClothState& cloth) {
-    constexpr std::size_t most = 4;
-    return static_cast<std::uint32_t>(std::min(pinned_piece_count(*cloth.topology, pinned_vertices(cloth)), most));
+    const std::size_t pieces = pinned_piece_count(*cloth.topology, pinned_vertices(cloth));
+    return static_cast<std::uint32_t>(std::min(pieces, std::size_t{most_tethers}));
 }
 
 Tethers scene_tethers(const ClothState& cloth, const StrainLimiting& settings) {

@@ -207,7 +207,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             for (std::size_t n = 0; n < moved.size(); ++n)
                 motion[n] = time_step * free(motion[n] / time_step, n, buffers.inverse_masses);
         if (options.tethers_per_vertex > 0)
-            keep_within_reach(buffers, {Real(1) / parts, static_cast<Real>(part + 1) / parts * time_step});
+            keep_within_reach(buffers, {Real(1) / parts, static_cast<Real>(part + 1) / parts * time_step, time_step});
         if (options.bends) {
             before_forces.resize(motion.size());
             for (std::size_t n = 0; n < motion.size(); ++n)
@@ -221,9 +221,8 @@ struct BasicStrainLimiter<Real>::Implementation {
     void keep_within_reach(const Buffers<Real>& buffers, const Move<Real>& move) {
         for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i) {
             if (!(buffers.inverse_masses[i] > Real(0))) continue;
-            const Eigen::Map<Vector3<Real>> x(moved.data() + 3 * i);
-            Eigen::Map<Vector3<Real>> step(motion.data() + 3 * i);
-            step = within_reach<Real>(x, step, move, buffers, options.tethers_per_vertex, i);
+            Eigen::Map<Vector3<Real>> x(moved.data() + 3 * i), step(motion.data() + 3 * i);
+            reference::keep_within_reach<Real>(x, step, move, holds(move, buffers, options.tethers_per_vertex, i));
         }
     }
 

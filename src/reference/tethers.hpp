@@ -5,8 +5,12 @@
 
 #include <apsl/reference.hpp>
 
+#include <Eigen/Core>
+
+#include <algorithm>
 #include <cstddef>
-#include <cstdint>
+#include <span>
+#include <vector>
 
 // What vertices hang by, and how they are kept within reach (docs/formulation.md, Tethers).
 namespace apsl::reference {
@@ -14,27 +18,60 @@ namespace apsl::reference {
 /// On to the next part of a step.
 template <class Real>
 struct Move {
-    Real share;  ///< of the step
-    Real time;   ///< s, from the start of the step to the end of the part
+    Real share;      ///< of the step
+    Real time;       ///< s, from the start of the step to the end of the part
+    Real time_step;  ///< s
 };
 
-/// Δt times the velocity of `vertex` at x: as given, or one that leads no further than its tethers reach. An anchor
-/// goes straight on with the velocity that it has at the start of the step, as a pinned vertex does.
+/// Where an anchor is at the end of a part, and how far a vertex may then be from it.
 template <class Real>
-Vector3<Real> within_reach(const Vector3<Real>& x, const Vector3<Real>& motion, const Move<Real>& move,
-                           const Buffers<Real>& buffers, std::size_t per_vertex, std::size_t vertex) {
-    const Vector3<Real> free = x + move.share * motion;
-    Vector3<Real> end = free;
+struct Hold {
+    Vector3<Real> at;
+    Vector3<Real> motion;  ///< m, Δt times its velocity
+    Real reach;
+};
+
+/// What holds `vertex`. One that starts the step out of reach is led back over it. Anchors go straight on with the
+/// velocities that they have at the start of the step, as pinned vertices do. Where they are further apart than two
+/// tethers together reach, nothing could be within reach of both: then all tethers of the vertex are longer in the same
+/// ratio.
+template <class Real>
+std::vector<Hold<Real>> holds(const Move<Real>& move, const Buffers<Real>& buffers, std::size_t per_vertex,
+                              std::size_t vertex) {
+    std::vector<Hold<Real>> found;
     for (std::size_t t = per_vertex * vertex; t < per_vertex * (vertex + 1); ++t) {
         const std::size_t anchor = buffers.tether_anchors[t];
-        const Real length = buffers.tether_lengths[t];
-        if (!(length > Real(0)) || 3 * anchor >= buffers.positions.size()) continue;
-        const Vector3<Real> at = position(buffers.positions, anchor) +
-                                 move.time * position(std::span<const Real>(buffers.velocities), anchor);
-        const Vector3<Real> from = end - at;
-        if (from.norm() > length) end = at + length / from.norm() * from;
+        if (!(buffers.tether_lengths[t] > Real(0)) || 3 * anchor >= buffers.positions.size()) continue;
+        const Vector3<Real> velocity = position(std::span<const Real>(buffers.velocities), anchor);
+        const Vector3<Real> start = position(buffers.positions, anchor);
+        const Real length = buffers.tether_lengths[t],
+                   excess = std::max((position(buffers.positions, vertex) - start).norm() - length, Real(0));
+        found.push_back({start + move.time * velocity, move.time_step * velocity,
+                         length + (Real(1) - move.time / move.time_step) * excess});
     }
-    return end == free ? motion : Vector3<Real>((end - x) / move.share);
+    Real stretch = Real(1);
+    for (const Hold<Real>& a : found)
+        for (const Hold<Real>& b : found) stretch = std::max(stretch, (a.at - b.at).norm() / (a.reach + b.reach));
+    for (Hold<Real>& hold : found) hold.reach *= stretch;
+    return found;
+}
+
+/// A vertex at x and Δt times its velocity, such that the part ends within reach of its anchors and no faster away from
+/// them than they go.
+template <class Real>
+void keep_within_reach(Eigen::Ref<Vector3<Real>> x, Eigen::Ref<Vector3<Real>> motion, const Move<Real>& move,
+                       const std::vector<Hold<Real>>& holds) {
+    Vector3<Real> end = x + move.share * motion;
+    bool held = false;
+    for (const Hold<Real>& hold : holds) {
+        const Vector3<Real> from = end - hold.at;
+        if (!(from.norm() > hold.reach)) continue;
+        const Vector3<Real> away = from.normalized();
+        end = hold.at + hold.reach * away;
+        motion -= std::max((motion - hold.motion).dot(away), Real(0)) * away;
+        held = true;
+    }
+    if (held) x = end - move.share * motion;
 }
 
 }  // namespace apsl::reference

@@ -136,10 +136,15 @@ TEST_CASE("tethers: none where no pin is reached, and vertices in no triangle pi
 TEST_CASE("tethers: what is refused", "[tethers]") {
     const Sheet sheet(grid(3, 3, 1.0, 1.0, Diagonals::uniform));
     CHECK_THROWS_WITH(sheet.tethers({9}, 1), "pinned vertex 9, expected one below 9");
-    CHECK_THROWS_WITH(sheet.tethers({0}, 0), "per_vertex is 0, expected a whole number >= 1");
+    CHECK_THROWS_WITH(sheet.tethers({0}, 0), "per_vertex is 0, expected a whole number from 1 to 4");
+    CHECK_THROWS_WITH(sheet.tethers({0}, 5), "per_vertex is 5, expected a whole number from 1 to 4");
     CHECK_THROWS_WITH(sheet.tethers({0}, 1, -1.0f), Catch::Contains("expected a finite number > 0"));
     CHECK_THROWS_WITH(sheet.tethers({0}, 1, std::numeric_limits<float>::infinity()),
                       Catch::Contains("expected a finite number > 0"));
+    Sheet far = sheet;
+    far.positions[0] = -3e38f;
+    far.positions[3] = 3e38f;
+    CHECK(far.tethers({0}, 1).lengths[1] == 0.0f);
     Sheet broken = sheet;
     broken.positions[4] = std::numeric_limits<float>::quiet_NaN();
     CHECK_THROWS_WITH(broken.tethers({0}, 1), "rest_positions of vertex 1 is not finite, expected finite numbers (m)");
