@@ -3,6 +3,7 @@
 
 #include <apsl/apsl.h>
 #include <apsl/strain_limiter.hpp>
+#include <apsl/tethers.hpp>
 
 #include <algorithm>
 #include <array>
@@ -85,6 +86,11 @@ void require_reserved_zero(const Struct& given, const char* name) {
 std::span<const cl_event> events(cl_uint wait_count, const cl_event* wait_list) {
     if (wait_count > 0) require(wait_list, "wait_list");
     return {wait_list, wait_count};
+}
+
+std::span<const uint32_t> pins(const uint32_t* pinned, size_t pinned_count) {
+    if (pinned_count > 0) require(pinned, "pinned");
+    return {pinned, pinned_count};
 }
 
 /// The defaults where there are none.
@@ -250,6 +256,32 @@ apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_coun
 
 void apsl_topology_destroy(apsl_topology* topology) {
     delete topology;
+}
+
+apsl_result apsl_pinned_piece_count(const apsl_topology* topology, const uint32_t* pinned, size_t pinned_count,
+                                    size_t* count) {
+    return guarded([&] {
+        require(count, "count");
+        *count = 0;
+        require(topology, "topology");
+        *count = apsl::pinned_piece_count(*topology->topology, pins(pinned, pinned_count));
+    });
+}
+
+apsl_result apsl_tethers_to_pins(const apsl_topology* topology, const float* rest_positions, const uint32_t* pinned,
+                                 size_t pinned_count, uint32_t per_vertex, float stretch, uint32_t* anchors,
+                                 float* lengths) {
+    return guarded([&] {
+        require(topology, "topology");
+        require(rest_positions, "rest_positions");
+        require(anchors, "anchors");
+        require(lengths, "lengths");
+        const apsl::Tethers tethers =
+            apsl::tethers_to_pins(*topology->topology, {rest_positions, 3 * topology->topology->vertex_count()},
+                                  pins(pinned, pinned_count), per_vertex, stretch);
+        std::copy(tethers.anchors.begin(), tethers.anchors.end(), anchors);
+        std::copy(tethers.lengths.begin(), tethers.lengths.end(), lengths);
+    });
 }
 
 apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,

@@ -210,6 +210,18 @@ APSL_API apsl_result apsl_topology_create(const uint32_t* triangles, size_t tria
 /** Null is allowed. Limiters made from it live on. */
 APSL_API void apsl_topology_destroy(apsl_topology* topology);
 
+/** *count is that of the sets of pinned vertices that edges connect: a vertex wants a tether to each. pinned: vertices,
+ * in any order. 0 where this fails. */
+APSL_API apsl_result apsl_pinned_piece_count(const apsl_topology* topology, const uint32_t* pinned, size_t pinned_count,
+                                             size_t* count);
+/** What apsl_buffers.tether_anchors and tether_lengths hold of one cloth: tethers to the nearest vertex of each of the
+ * per_vertex nearest sets of pinned vertices, as long as the way there over the surface at rest times stretch, > 0.
+ * rest_positions: m, 3 floats a vertex, [V]. anchors and lengths: per_vertex a vertex, [V]; left alone where this
+ * fails. With several cloths in the buffers, add to the anchors what the vertices before them count. */
+APSL_API apsl_result apsl_tethers_to_pins(const apsl_topology* topology, const float* rest_positions,
+                                          const uint32_t* pinned, size_t pinned_count, uint32_t per_vertex,
+                                          float stretch, uint32_t* anchors, float* lengths);
+
 /** One cloth or many. options may be null: the defaults. *limiter is null where this fails. */
 APSL_API apsl_result apsl_limiter_create(cl_context context, cl_device_id device, const apsl_topology* const* cloths,
                                          size_t cloth_count, const apsl_options* options, apsl_limiter** limiter);

@@ -3,7 +3,11 @@
 #include "embed/c_views.hpp"
 #include "support/device_cloth.hpp"
 
+#include <apsl/tethers.hpp>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -253,6 +257,7 @@ TEST_CASE("the C interface's defaults are the C++ ones", "[embed]") {
     CHECK(o.bends == 0);
     CHECK(o.acceleration_per_vertex == 0);
     CHECK(o.keeps_contacts == 0);
+    CHECK(o.tethers_per_vertex == 0);
     const apsl_parameters p = apsl_default_parameters();
     const Parameters parameters;
     CHECK(p.time_step == parameters.time_step);
@@ -311,6 +316,131 @@ TEST_CASE("a whole step by the C interface leaves the bytes of the C++ one", "[e
     CHECK(by_c.read_positions() == by_cpp.read_positions());
     CHECK(by_c.read_velocities() == by_cpp.read_velocities());
     CHECK(by_c.read_positions() != CallerBuffers({&cloth, 1}, options).read_positions());
+}
+
+TEST_CASE("tethers by the C interface are the C++ ones, and a step with them leaves the same bytes", "[embed]") {
+    const Mesh mesh = grid(9, 7, 1.0, 1.0, Diagonals::alternating);
+    const MovingCloth cloth = moving_cloth(mesh, 1);
+    const CTopology topology(cloth);
+    const std::vector<float> rest_positions(mesh.positions.begin(), mesh.positions.end());
+    const std::vector<std::uint32_t> pinned{31, 0};  // moving_cloth's pins
+    constexpr std::uint32_t per_vertex = 2;
+    const Tethers tethers = tethers_to_pins(*cloth.topology, rest_positions, pinned, per_vertex, 0.75f);
+
+    std::size_t pieces = 9;
+    REQUIRE(apsl_pinned_piece_count(topology.topology, pinned.data(), pinned.size(), &pieces) == APSL_SUCCESS);
+    CHECK(pieces == 2);
+    REQUIRE(apsl_pinned_piece_count(topology.topology, nullptr, 0, &pieces) == APSL_SUCCESS);
+    CHECK(pieces == 0);
+    std::vector<std::uint32_t> anchors = poison<std::uint32_t>(tethers.anchors.size() + 1);
+    std::vector<float> lengths = poison<float>(tethers.lengths.size() + 1);
+    REQUIRE(apsl_tethers_to_pins(topology.topology, rest_positions.data(), pinned.data(), pinned.size(), per_vertex,
+                                 0.75f, anchors.data(), lengths.data()) == APSL_SUCCESS);
+    CHECK(anchors.back() == poison<std::uint32_t>(1)[0]);
+    CHECK(std::isnan(lengths.back()));
+    anchors.pop_back();
+    lengths.pop_back();
+    CHECK(anchors == tethers.anchors);
+    CHECK(lengths == tethers.lengths);
+    // One of two steps of 1/8 m from the first pin along its edge: 0.75 of that.
+    CHECK(anchors[per_vertex * 1] == 0);
+    CHECK(lengths[per_vertex * 1] == 0.75f * 0.125f);
+
+    apsl_options c_options = apsl_default_options();
+    c_options.integrates = 1;
+    c_options.tethers_per_vertex = per_vertex;
+    const Options options{.integrates = true, .tethers_per_vertex = per_vertex};
+    apsl_limiter* limiter = nullptr;
+    REQUIRE(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &c_options, &limiter) ==
+            APSL_SUCCESS);
+    // The lengths of the C views begin behind a number that is none of theirs.
+    std::vector<float> behind{100.0f};
+    behind.insert(behind.end(), lengths.begin(), lengths.end());
+    const DeviceArray<std::uint32_t> device_anchors(anchors);
+    const DeviceArray<float> device_lengths(lengths), lengths_behind(behind);
+    const CallerBuffers by_c({&cloth, 1}, options), by_cpp({&cloth, 1}, options), without({&cloth, 1}, options);
+    Buffers cpp_views = by_cpp.views(), untethered = by_c.views();
+    cpp_views.tether_anchors = {device_anchors.get()};
+    cpp_views.tether_lengths = {device_lengths.get()};
+    untethered.tether_anchors = untethered.tether_lengths = {};
+    const apsl_parameters c_parameters = apsl_default_parameters();
+    const Owned<cl_command_queue> queue = in_order_queue();
+    const apsl_buffers nothing = c_views(untethered);
+    CHECK(apsl_limiter_enqueue(limiter, queue.get(), &nothing, &c_parameters, 1, 0, nullptr, nullptr) ==
+          APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(std::string(apsl_last_error()).find("buffers.tether_anchors") != std::string::npos);
+    untethered.tether_anchors = cpp_views.tether_anchors;
+    untethered.tether_lengths = {lengths_behind.get(), sizeof(float)};
+    const apsl_buffers views = c_views(untethered);
+    REQUIRE(apsl_limiter_enqueue(limiter, queue.get(), &views, &c_parameters, 1, 0, nullptr, nullptr) == APSL_SUCCESS);
+    StrainLimiter cpp(device().context, device().id, cloth.topology, options);
+    require_success(wait_and_release(cpp.enqueue(queue.get(), cpp_views, Parameters{})), "the step");
+    apsl_limiter_destroy(limiter);
+    CHECK(same_bytes(by_c.read_positions(), by_cpp.read_positions()));
+    CHECK(same_bytes(by_c.read_velocities(), by_cpp.read_velocities()));
+
+    StrainLimiter free(device().context, device().id, cloth.topology, {.integrates = true});
+    Buffers free_views = without.views();
+    free_views.tether_anchors = free_views.tether_lengths = {};
+    require_success(wait_and_release(free.enqueue(queue.get(), free_views, Parameters{})), "the step");
+    CHECK_FALSE(same_bytes(by_c.read_positions(), without.read_positions()));
+}
+
+TEST_CASE("the C interface: what tethers cannot be made of is refused, and nothing is written", "[embed]") {
+    const Mesh mesh = grid(3, 3, 1.0, 1.0, Diagonals::alternating);
+    const CTopology topology(moving_cloth(mesh, 1));
+    std::vector<float> rest_positions(mesh.positions.begin(), mesh.positions.end());
+    const std::vector<std::uint32_t> pinned{0, 9};
+    std::vector<std::uint32_t> anchors = poison<std::uint32_t>(mesh.vertex_count());
+    std::vector<float> lengths = poison<float>(mesh.vertex_count());
+    const auto refused = [&](const std::string& line, const apsl_topology* of, const float* positions,
+                             const std::uint32_t* pins, std::uint32_t per_vertex, float stretch,
+                             std::uint32_t* to_anchors, float* to_lengths) {
+        CHECK(apsl_tethers_to_pins(of, positions, pins, 1, per_vertex, stretch, to_anchors, to_lengths) ==
+              APSL_ERROR_INVALID_ARGUMENT);
+        CAPTURE(line, apsl_last_error());
+        CHECK(std::string(apsl_last_error()).find(line) != std::string::npos);
+        CHECK(same_bytes(anchors, poison<std::uint32_t>(anchors.size())));
+        CHECK(same_bytes(lengths, poison<float>(lengths.size())));
+    };
+    const float* const x = rest_positions.data();
+    const std::uint32_t *const good = pinned.data(), *const bad = pinned.data() + 1;
+    std::uint32_t* const a = anchors.data();
+    float* const l = lengths.data();
+    refused("topology is null", nullptr, x, good, 1, 1.0f, a, l);
+    refused("rest_positions is null", topology.topology, nullptr, good, 1, 1.0f, a, l);
+    refused("pinned is null", topology.topology, x, nullptr, 1, 1.0f, a, l);
+    refused("anchors is null", topology.topology, x, good, 1, 1.0f, nullptr, l);
+    refused("lengths is null", topology.topology, x, good, 1, 1.0f, a, nullptr);
+    refused("pinned vertex 9, expected one below 9", topology.topology, x, bad, 1, 1.0f, a, l);
+    refused("per_vertex is 0", topology.topology, x, good, 0, 1.0f, a, l);
+    for (const float stretch : {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN()})
+        refused("stretch is", topology.topology, x, good, 1, stretch, a, l);
+    rest_positions[4] = std::numeric_limits<float>::infinity();
+    refused("rest_positions of vertex 1 is not finite", topology.topology, x, good, 1, 1.0f, a, l);
+
+    std::size_t pieces = 7;
+    CHECK(apsl_pinned_piece_count(topology.topology, bad, 1, &pieces) == APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(pieces == 0);
+    pieces = 7;
+    CHECK(apsl_pinned_piece_count(nullptr, good, 1, &pieces) == APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(pieces == 0);
+    CHECK(apsl_pinned_piece_count(topology.topology, nullptr, 1, &pieces) == APSL_ERROR_INVALID_ARGUMENT);
+    CHECK(apsl_pinned_piece_count(topology.topology, good, 1, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
+
+    apsl_options options = apsl_default_options();
+    apsl_limiter* limiter = nullptr;
+    const auto refused_options = [&](const std::string& line) {
+        CHECK(apsl_limiter_create(device().context, device().id, &topology.topology, 1, &options, &limiter) ==
+              APSL_ERROR_INVALID_ARGUMENT);
+        CAPTURE(line, apsl_last_error());
+        CHECK(std::string(apsl_last_error()).find(line) != std::string::npos);
+    };
+    options.tethers_per_vertex = 1;
+    refused_options("tethers_per_vertex is 1, which needs integrates");
+    options.integrates = 1;
+    options.tethers_per_vertex = 17;
+    refused_options("tethers_per_vertex is 17, expected a whole number >= 0 and <= 16");
 }
 
 TEST_CASE("what is reserved in C structs is refused unless zero", "[embed]") {

@@ -17,7 +17,9 @@ inline apsl_buffers c_views(const Buffers& v) {
             {v.stretch_ceilings.buffer, v.stretch_ceilings.offset},
             {v.contacts.buffer, v.contacts.offset},
             {v.rest_hinges.buffer, v.rest_hinges.offset},
-            {v.accelerations.buffer, v.accelerations.offset}};
+            {v.accelerations.buffer, v.accelerations.offset},
+            {v.tether_anchors.buffer, v.tether_anchors.offset},
+            {v.tether_lengths.buffer, v.tether_lengths.offset}};
 }
 
 }  // namespace apsl::test
