@@ -3,6 +3,7 @@
 
 #include "values.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -25,7 +26,8 @@ py::array checked(py::handle argument, const char* name, const std::string& kind
         PyErr_Clear();
         refuse(name, py::str(py::type::handle_of(argument).attr("__name__")), what);
     }
-    if (kinds.find(array.dtype().kind()) == std::string::npos)
+    // Of an empty list numpy makes real numbers.
+    if (array.size() > 0 && kinds.find(array.dtype().kind()) == std::string::npos)
         refuse(name, "dtype " + std::string(py::str(array.dtype())), what);
     const bool right_columns =
         columns > 0 ? array.ndim() == 2 && static_cast<std::size_t>(array.shape(1)) == columns : array.ndim() == 1;
@@ -63,20 +65,30 @@ template Array<float> table<float>(py::handle, const char*, std::optional<std::s
 template Array<float> vectors<float>(py::handle, const char*, std::optional<std::size_t>);
 template Array<double> vectors<double>(py::handle, const char*, std::optional<std::size_t>);
 
-std::vector<Triangle> triangle_list(py::handle argument) {
-    const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> indices(
-        checked(argument, "triangles", integer_kinds, std::nullopt, "triangles", 3));
-    const auto index = indices.unchecked<2>();
-    std::vector<Triangle> triangles(static_cast<std::size_t>(indices.shape(0)));
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            const std::int64_t vertex = index(static_cast<py::ssize_t>(t), static_cast<py::ssize_t>(corner));
-            if (vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max())
-                refuse("triangles", "vertex " + std::to_string(vertex) + " in triangle " + std::to_string(t),
-                       "0 to 4294967295");
-            triangles[t][corner] = static_cast<std::uint32_t>(vertex);
-        }
+Array<std::uint32_t> indices(py::handle argument, const char* name, const char* row, std::optional<std::size_t> rows,
+                             std::size_t columns) {
+    const py::array given = checked(argument, name, integer_kinds, rows, (std::string(row) + "s").c_str(), columns);
+    if (given.dtype().kind() == 'u' && given.itemsize() <= 4) return Array<std::uint32_t>(given);
+    const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wide(given);
+    Array<std::uint32_t> narrow(std::vector<py::ssize_t>(wide.shape(), wide.shape() + wide.ndim()));
+    for (py::ssize_t n = 0; n < wide.size(); ++n) {
+        const std::int64_t vertex = wide.data()[n];
+        if (vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max())
+            refuse(name,
+                   "vertex " + std::to_string(vertex) + " in " + row + " " +
+                       std::to_string(static_cast<std::size_t>(n) / std::max<std::size_t>(columns, 1)),
+                   "0 to 4294967295");
+        narrow.mutable_data()[n] = static_cast<std::uint32_t>(vertex);
     }
+    return narrow;
+}
+
+std::vector<Triangle> triangle_list(py::handle argument) {
+    const Array<std::uint32_t> corners = indices(argument, "triangles", "triangle", std::nullopt, 3);
+    const auto index = corners.unchecked<2>();
+    std::vector<Triangle> triangles(static_cast<std::size_t>(corners.shape(0)));
+    for (py::ssize_t t = 0; t < corners.shape(0); ++t)
+        triangles[static_cast<std::size_t>(t)] = {index(t, 0), index(t, 1), index(t, 2)};
     return triangles;
 }
 

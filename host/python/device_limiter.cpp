@@ -79,7 +79,9 @@ Address DeviceLimiter::enqueue(Address queue, const std::map<std::string, Place>
                           .stretch_ceilings = view("stretch_ceiling"),
                           .contacts = view("contacts"),
                           .rest_hinges = view("rest_hinges"),
-                          .accelerations = view("accelerations")};
+                          .accelerations = view("accelerations"),
+                          .tether_anchors = view("tether_anchors"),
+                          .tether_lengths = view("tether_lengths")};
     const py::gil_scoped_release others_may_run;
     const std::lock_guard one_call_at_a_time(mutex_);
     return reinterpret_cast<Address>(

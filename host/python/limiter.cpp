@@ -56,19 +56,21 @@ Limiter::Limiter(py::handle triangles, py::handle vertex_count, py::handle devic
     if (options.stretch_ceiling_per_triangle) stretch_ceilings_ = make_buffer(triangle_count_);
     if (options.keeps_contacts) contacts_ = make_buffer(APSLK_CONTACT_SIZE * vertex_count_);
     if (options.acceleration_per_vertex) accelerations_ = make_buffer(3 * vertex_count_);
+    tethers_per_vertex_ = options.tethers_per_vertex;
+    if (tethers_per_vertex_ > 0) tether_anchors_ = make_buffer(tethers_per_vertex_ * vertex_count_);
+    if (tethers_per_vertex_ > 0) tether_lengths_ = make_buffer(tethers_per_vertex_ * vertex_count_);
 }
 
-host::BufferHandle Limiter::make_buffer(std::size_t floats) {
+host::BufferHandle Limiter::make_buffer(std::size_t count) {
     cl_int code = CL_SUCCESS;
-    host::BufferHandle buffer(
-        clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, floats * sizeof(float), nullptr, &code));
+    host::BufferHandle buffer(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, count * sizeof(float), nullptr, &code));
     host::check(code, "apsl: allocating an array on the device");
     return buffer;
 }
 
-void Limiter::upload(const host::BufferHandle& buffer, const float* values, std::size_t floats) {
+void Limiter::upload(const host::BufferHandle& buffer, const void* numbers, std::size_t count) {
     // Blocking: where a later step throws, nothing may still be reading the caller's array.
-    host::check(clEnqueueWriteBuffer(queue_.get(), buffer.get(), CL_TRUE, 0, floats * sizeof(float), values, 0, nullptr,
+    host::check(clEnqueueWriteBuffer(queue_.get(), buffer.get(), CL_TRUE, 0, count * sizeof(float), numbers, 0, nullptr,
                                      nullptr),
                 "apsl: copying an array to the device");
 }
@@ -97,6 +99,14 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
     const auto given_contacts = taken(contacts_, "contacts", vertex_count_, APSLK_CONTACT_SIZE);
     const auto given_accelerations = taken(accelerations_, "accelerations", vertex_count_, 3);
     const auto given_hinges = taken(rest_hinges_, "rest_hinges", hinge_count_, 2);
+    std::optional<Array<std::uint32_t>> given_anchors;
+    std::optional<Array<float>> given_lengths;
+    if (tethers_per_vertex_ > 0) {
+        given_anchors = indices(settings.attr("pop")("tether_anchors"), "tether_anchors", "row", vertex_count_,
+                                tethers_per_vertex_);
+        given_lengths =
+            table<float>(settings.attr("pop")("tether_lengths"), "tether_lengths", vertex_count_, tethers_per_vertex_);
+    }
     for_each_field(parameter_fields, [&](const auto& field) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, Field<Parameters, float>>) {
             const auto& list = field.member == &Parameters::stretch_ceiling ? given_ceilings : given_regularization;
@@ -123,6 +133,8 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
         if (given_ceilings) upload(stretch_ceilings_, given_ceilings->data(), triangle_count_);
         if (given_contacts) upload(contacts_, given_contacts->data(), APSLK_CONTACT_SIZE * vertex_count_);
         if (given_accelerations) upload(accelerations_, given_accelerations->data(), 3 * vertex_count_);
+        if (given_anchors) upload(tether_anchors_, given_anchors->data(), tethers_per_vertex_ * vertex_count_);
+        if (given_lengths) upload(tether_lengths_, given_lengths->data(), tethers_per_vertex_ * vertex_count_);
         const Buffers buffers{.positions = {positions_.get()},
                               .velocities = {velocities_.get()},
                               .inverse_masses = {inverse_masses_.get()},
@@ -132,7 +144,9 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
                               .stretch_ceilings = {stretch_ceilings_.get()},
                               .contacts = {contacts_.get()},
                               .rest_hinges = {rest_hinges_.get()},
-                              .accelerations = {accelerations_.get()}};
+                              .accelerations = {accelerations_.get()},
+                              .tether_anchors = {tether_anchors_.get()},
+                              .tether_lengths = {tether_lengths_.get()}};
         const host::EventHandle filtered(limiter_->enqueue(queue_.get(), buffers, parameters));
         const host::EventHandle read(limiter_->read_stats(queue_.get(), {&stats, 1}));
         const cl_event read_event = read.get();

@@ -28,13 +28,15 @@ public:
     py::dict options() const { return to_dict(limiter_->options(), option_fields); }
 
 private:
-    host::BufferHandle make_buffer(std::size_t floats);
-    void upload(const host::BufferHandle& buffer, const float* values, std::size_t floats);
+    // Of numbers of 32 bits.
+    host::BufferHandle make_buffer(std::size_t count);
+    void upload(const host::BufferHandle& buffer, const void* numbers, std::size_t count);
 
     std::mutex mutex_;
     std::size_t vertex_count_;
     std::size_t triangle_count_ = 0;
     std::size_t hinge_count_ = 0;
+    std::size_t tethers_per_vertex_ = 0;
     host::ContextHandle context_;
     host::QueueHandle queue_;
     std::optional<StrainLimiter> limiter_;
@@ -48,6 +50,8 @@ private:
     host::BufferHandle accelerations_;     // where Options::acceleration_per_vertex
     host::BufferHandle stretch_ceilings_;  // where Options::stretch_ceiling_per_triangle
     host::BufferHandle contacts_;          // where Options::keeps_contacts
+    host::BufferHandle tether_anchors_;    // where Options::tethers_per_vertex
+    host::BufferHandle tether_lengths_;    // likewise
 };
 
 }  // namespace apsl::python

@@ -6,6 +6,7 @@
 #include "devices.hpp"
 #include "limiter.hpp"
 #include "process.hpp"
+#include "tethers.hpp"
 
 #include <apsl/version.hpp>
 
@@ -52,6 +53,10 @@ PYBIND11_MODULE(_core, module) {
     module.def("rest_hinges", rest_hinges, py::arg("positions"), py::arg("triangles"));
     module.def("rest_shapes", rest_shapes, py::arg("positions"), py::arg("triangles"));
     module.def("area_change", area_change, py::arg("positions"), py::arg("triangles"), py::arg("rest_areas"));
+    module.def("tethers_to_pins", tethers_to_pins, py::arg("rest_positions"), py::arg("triangles"), py::arg("pinned"),
+               py::arg("per_vertex"), py::arg("stretch"));
+    module.def("pinned_piece_count", pinned_piece_count, py::arg("triangles"), py::arg("vertex_count"),
+               py::arg("pinned"));
     module.def("default_parameters", [] { return to_dict(Parameters{}, parameter_fields); });
     py::class_<Limiter>(module, "Limiter")
         .def(py::init<py::handle, py::handle, py::handle, const py::kwargs&>())

@@ -73,12 +73,26 @@ class Taken(unittest.TestCase):
         number = np.int64(device().number)
         self.assertGreater(apsl.StrainLimiter(ONE_TRIANGLE, np.array(3), number).scratch_bytes, 0)
 
+    def test_anchors_of_any_type_of_integers_are_the_same(self):
+        anchors, lengths = np.array([[2, 0], [0, 2], [1, 1]]), np.array([[0, 0], [0.5, 1], [0.25, 2]])
+        made = limiter(ONE_TRIANGLE, 3, integrates=True, tethers_per_vertex=2)
+        arrays = CORNER, np.zeros((3, 3)), [0, 1, 0], [0]
+        expected = made.step(*arrays, tether_anchors=anchors.astype(np.uint32), tether_lengths=lengths)[0]
+        self.assertGreater(np.abs(expected - CORNER).max(), 0.1)
+        kinds = [anchors.astype(kind) for kind in (np.uint8, np.int16, np.int64, np.uint64, ">u4", ">i4")]
+        for variant in [*kinds, anchors.tolist(), np.asfortranarray(anchors, np.uint32),
+                        np.repeat(anchors.astype(np.uint32), 2, axis=1)[:, ::2]]:
+            with self.subTest(getattr(variant, "dtype", list)):
+                got = made.step(*arrays, tether_anchors=variant, tether_lengths=np.asfortranarray(lengths))[0]
+                self.assertEqual(got.tobytes(), expected.tobytes())
+
     def test_every_parameter_is_taken_at_its_default(self):
         cloth = Grid(6)
         made = limiter(cloth.triangles, cloth.vertex_count)
         defaults = made.default_parameters()
         self.assertEqual(made.limit(*cloth.arrays())[0].tobytes(), made.limit(*cloth.arrays(), **defaults)[0].tobytes())
-        arrays = {"rest_shapes", "contacts", "rest_hinges", "accelerations"}  # where options ask for them; there is no default
+        # Where options ask for them; there is no default.
+        arrays = {"rest_shapes", "contacts", "rest_hinges", "accelerations", "tether_anchors", "tether_lengths"}
         self.assertEqual(set(defaults) | arrays, set(apsl.Parameters.__annotations__))
 
     def test_every_resolved_option_is_taken(self):
@@ -158,6 +172,63 @@ class Refused(unittest.TestCase):
         self.refuse("regularization: got nothing, expected an array", mapped.limit, **self.arguments)
         self.refuse("regularization: got shape (2,), expected (1,)", mapped.limit, **self.arguments,
                     regularization=[2, 2])
+
+    def test_tethers(self):
+        made = limiter(ONE_TRIANGLE, 3, integrates=True, tethers_per_vertex=2)
+        anchors, lengths = np.zeros((3, 2), np.uint32), np.ones((3, 2), np.float32)
+        good = {**self.arguments, "tether_anchors": anchors, "tether_lengths": lengths}
+        for name, value, line in [
+            ("tether_anchors", anchors[:2], "tether_anchors: got shape (2, 2), expected (3, 2)"),
+            ("tether_anchors", anchors[:, :1], "tether_anchors: got shape (3, 1), expected (3, 2)"),
+            ("tether_anchors", anchors.ravel(), "tether_anchors: got shape (6,), expected (3, 2)"),
+            ("tether_anchors", lengths, "tether_anchors: got dtype float32, expected an array of integers"),
+            ("tether_anchors", anchors > 0, "tether_anchors: got dtype bool, expected an array of integers"),
+            ("tether_anchors", None, "tether_anchors: got dtype object, expected an array of integers"),
+            ("tether_anchors", [[0, 0], [0, -1], [0, 0]], "tether_anchors: got vertex -1 in row 1, expected 0 to"),
+            ("tether_anchors", [[0, 0], [0, 0], [2**32, 0]], "tether_anchors: got vertex 4294967296 in row 2"),
+            ("tether_lengths", lengths[:, :1], "tether_lengths: got shape (3, 1), expected (3, 2)"),
+            ("tether_lengths", lengths[0], "tether_lengths: got shape (2,), expected (3, 2)"),
+            ("tether_lengths", [["a"] * 2] * 3, "tether_lengths: got dtype <U1, expected an array of real numbers"),
+        ]:
+            with self.subTest(line):
+                self.refuse(line, made.step, **{**good, name: value})
+        for name in ("tether_anchors", "tether_lengths"):
+            self.refuse(f"{name}: got nothing, expected an array (limiter made with tethers_per_vertex)", made.step,
+                        **{key: value for key, value in good.items() if key != name})
+            with self.assertRaisesRegex(TypeError, f"unexpected keyword argument '{name}'"):
+                self.limiter.limit(**self.arguments, **{name: good[name]})
+        self.refuse("tethers_per_vertex is 1, which needs integrates", limiter, ONE_TRIANGLE, 3, tethers_per_vertex=1)
+        self.refuse("tethers_per_vertex is 17, expected a whole number >= 0 and <= 16", limiter, ONE_TRIANGLE, 3,
+                    integrates=True, tethers_per_vertex=17)
+        self.refuse("tethers_per_vertex: got True, expected an integer", limiter, ONE_TRIANGLE, 3, integrates=True,
+                    tethers_per_vertex=True)
+        self.assertEqual(made.step(**good)[2].status, "ok")  # still usable
+
+    def test_what_tethers_are_made_of(self):
+        good = {"rest_positions": CORNER, "triangles": ONE_TRIANGLE, "pinned": [0], "per_vertex": 1}
+        for named, line in [
+            ({"rest_positions": CORNER.ravel()}, "rest_positions: got shape (9,), expected (vertices, 3)"),
+            ({"rest_positions": CORNER * np.nan}, "rest_positions of vertex 0 is not finite"),
+            ({"triangles": [[0, 1, 2.5]]}, "triangles: got dtype float64, expected an array of integers"),
+            ({"pinned": [0.0]}, "pinned: got dtype float64, expected an array of integers"),
+            ({"pinned": [True, False, False]}, "pinned: got dtype bool, expected an array of integers"),
+            ({"pinned": 0}, "pinned: got shape (), expected (rows,)"),
+            ({"pinned": [[0]]}, "pinned: got shape (1, 1), expected (rows,)"),
+            ({"pinned": [0, -1]}, "pinned: got vertex -1 in row 1, expected 0 to 4294967295"),
+            ({"pinned": [3]}, "pinned vertex 3, expected one below 3"),
+            ({"per_vertex": 0}, "per_vertex is 0, expected a whole number >= 1"),
+            ({"per_vertex": -1}, "per_vertex: got -1, expected an integer"),
+            ({"per_vertex": 1.0}, "per_vertex: got 1.0, expected an integer"),
+            ({"stretch": 0}, "stretch is 0"),
+            ({"stretch": np.nan}, "stretch is nan"),
+            ({"stretch": "1"}, "stretch: got '1', expected a number"),
+        ]:
+            with self.subTest(line):
+                self.refuse(line, apsl.tethers_to_pins, **{**good, **named})
+        self.refuse("names vertex 3", apsl.tethers_to_pins, CORNER, [[0, 1, 3]], [0], 1, code="invalid_mesh")
+        self.refuse("pinned vertex 3, expected one below 3", apsl.pinned_piece_count, ONE_TRIANGLE, 3, [3])
+        self.refuse("pinned: got dtype float64", apsl.pinned_piece_count, ONE_TRIANGLE, 3, [0.5])
+        self.refuse("vertex_count: got -3, expected an integer", apsl.pinned_piece_count, ONE_TRIANGLE, -3, [])
 
     def test_triangles(self):
         for triangles, line in [

@@ -145,6 +145,22 @@ class Same(unittest.TestCase):
         self.assertEqual(made.read_stats(QUEUE), stats)
         self.assertEqual(arrays[1].get().tobytes(), limited.tobytes())
 
+    def test_tethers(self):
+        cloth, options = self.cloth, {"integrates": True, "tethers_per_vertex": 2}
+        anchors, lengths = apsl.tethers_to_pins(cloth.positions, cloth.triangles, cloth.pins, 2, stretch=0.9)
+        moved, limited, stats = limiter(cloth.triangles, cloth.vertex_count, **options).step(
+            *self.numbers, tether_anchors=anchors, tether_lengths=lengths, **self.parameters)
+        free, _, _ = limiter(cloth.triangles, cloth.vertex_count, integrates=True).step(*self.numbers, **self.parameters)
+        self.assertGreater(np.abs(moved - free).max(), 0.01)
+        made, given = self.made(**options), cl_array.to_device(QUEUE, anchors)
+        behind = cl_array.to_device(QUEUE, np.concatenate([[5], anchors.ravel()]).astype(np.uint32))
+        for places in (given, given.data, given.data.int_ptr, (behind.data, 4), behind[1:].reshape(anchors.shape)):
+            arrays = [array(each) for each in self.numbers]
+            made.enqueue(QUEUE, *arrays, tether_anchors=places, tether_lengths=array(lengths), **self.parameters)
+            self.assertEqual(made.read_stats(QUEUE), stats)
+            self.assertEqual([arrays[0].get().tobytes(), arrays[1].get().tobytes()],
+                             [moved.tobytes(), limited.tobytes()])
+
     def test_a_device_of_the_context(self):
         for given in (cl_device(), device(), device().number):
             self.assertGreater(self.made(device=given).scratch_bytes, 0)
@@ -274,6 +290,33 @@ class Refused(unittest.TestCase):
                     rest_shapes=array([[1, 0, 0]]))
         self.refuse("buffers.velocities is given, but Options::positions_only is on",
                     on_device(ONE_TRIANGLE, 3, positions_only=True).enqueue, **self.arguments)
+
+    def test_tethers(self):
+        made = on_device(ONE_TRIANGLE, 3, integrates=True, tethers_per_vertex=2)
+        anchors, lengths = np.zeros((3, 2), np.uint32), np.ones((3, 2), np.float32)
+        good = {**self.arguments, "tether_anchors": cl_array.to_device(QUEUE, anchors), "tether_lengths": array(lengths)}
+        short = cl.Buffer(CONTEXT, cl.mem_flags.READ_WRITE, 23)
+        for name, value, line in [
+            ("tether_anchors", cl_array.to_device(QUEUE, anchors.astype(np.int32)),
+             "tether_anchors: got dtype int32, expected uint32"),
+            ("tether_anchors", array(lengths), "tether_anchors: got dtype float32, expected uint32"),
+            ("tether_anchors", cl_array.to_device(QUEUE, anchors[:2]), "tether_anchors: got shape (2, 2), expected (3, 2)"),
+            ("tether_anchors", cl_array.to_device(QUEUE, np.zeros((3, 3), np.uint32)),
+             "tether_anchors: got strides (12, 4) bytes, expected (8, 4)"),
+            ("tether_anchors", anchors, "tether_anchors: got ndarray, expected a pyopencl Buffer or Array"),
+            ("tether_anchors", short, "buffers.tether_anchors holds 23 bytes, expected at least 24"),
+            ("tether_lengths", good["tether_anchors"], "tether_lengths: got dtype uint32, expected float32"),
+            ("tether_lengths", array(lengths[:, 0]), "tether_lengths: got shape (3,), expected (3, 2)"),
+            ("tether_lengths", short, "buffers.tether_lengths holds 23 bytes, expected at least 24"),
+        ]:
+            with self.subTest(line):
+                self.refuse(line, made.enqueue, **{**good, name: value})
+        for name in ("tether_anchors", "tether_lengths"):
+            self.refuse(f"{name}: got nothing, expected an array (limiter made with tethers_per_vertex)", made.enqueue,
+                        **{key: value for key, value in good.items() if key != name})
+            with self.assertRaisesRegex(TypeError, f"unexpected keyword argument '{name}'"):
+                self.made.enqueue(**self.arguments, **{name: good[name]})
+        made.enqueue(**good).wait()  # still usable
 
     def test_limiters(self):
         make = apsl.StrainLimiter

@@ -186,6 +186,90 @@ class WholeStep(unittest.TestCase):
             limiter(ONE_TRIANGLE, 3).limit(*arrays, damping=1.0)
 
 
+class Tethers(unittest.TestCase):
+    """One triangle without a rest area, so that nothing but tethers moves it: vertex 0 is pinned."""
+
+    def step(self, lengths, anchors=((0,), (0,), (0,)), velocities=((0, 0, 0),) * 3, sub_steps=2, **settings):
+        """By default one part, and a last sub-step that has nothing to correct."""
+        made = limiter(ONE_TRIANGLE, 3, integrates=True, tethers_per_vertex=len(anchors[0]))
+        return made.step(CORNER, velocities, [0, 2, 2], [0], time_step=TIME_STEP, sub_steps=sub_steps,
+                         tether_anchors=anchors, tether_lengths=lengths, **settings)
+
+    def test_what_is_out_of_reach_ends_at_its_length(self):
+        positions, velocities, stats = self.step([[0], [0.75], [0]])
+        np.testing.assert_allclose(positions, [[0, 0, 0], [0.75, 0, 0], [0, 1, 0]], atol=1e-6)
+        # A quarter of a metre in a 64th of a second.
+        np.testing.assert_allclose(velocities, [[0, 0, 0], [-16, 0, 0], [0, 0, 0]], atol=1e-4)
+        self.assertEqual(stats.status, "ok")
+
+    def test_what_is_within_reach_goes_its_way(self):
+        velocities = [[0, 0, 0], [16, 0, 0], [0, 8, 0]]
+        expected = CORNER + np.array(velocities) * TIME_STEP
+        positions, after, _ = self.step([[0], [1.25], [0]], velocities=velocities)
+        np.testing.assert_array_equal(positions, expected)
+        np.testing.assert_array_equal(after, velocities)
+        positions, after, _ = self.step([[0], [1.125], [0]], velocities=velocities)  # half of the way
+        np.testing.assert_allclose(positions, [[0, 0, 0], [1.125, 0, 0], expected[2]], atol=1e-6)
+        np.testing.assert_allclose(after, [[0, 0, 0], [8, 0, 0], [0, 8, 0]], atol=1e-4)
+
+    def test_an_anchor_goes_on_with_the_velocity_of_its_pin(self):
+        # The pin ends at x = −1/2, and what is tethered to it 3/4 and 1 away from there, the latter from (1/2, 1).
+        velocities = [[-32, 0, 0], [0, 0, 0], [0, 0, 0]]
+        positions, after, _ = self.step([[0], [0.75], [1]], velocities=velocities)
+        third = np.array([0.5, 1, 0]) / np.sqrt(1.25) - [0.5, 0, 0]
+        np.testing.assert_allclose(positions, [[-0.5, 0, 0], [0.25, 0, 0], third], atol=1e-6)
+        np.testing.assert_allclose(after, (positions - CORNER) / TIME_STEP, atol=1e-4)
+        # In two parts: at half time the pin is at −1/4 and vertex 1 at 1/2. It goes on by as much, to 0, within 3/4.
+        positions, after, _ = self.step([[0], [0.75], [0]], velocities=velocities, sub_steps=3)
+        np.testing.assert_allclose(positions[:2], [[-0.5, 0, 0], [0, 0, 0]], atol=1e-6)
+        np.testing.assert_allclose(after[1], [-64, 0, 0], atol=1e-4)
+
+    def test_what_falls_is_held_at_its_length(self):
+        # Vertex 2 hangs below the pin at its length, vertex 1 has none: g Δt² a call of one part.
+        positions, velocities, _ = self.step([[0], [0], [1]], acceleration=(0, 16, 0))
+        np.testing.assert_allclose(positions, [[0, 0, 0], [1, 16 * TIME_STEP**2, 0], [0, 1, 0]], atol=1e-6)
+        np.testing.assert_allclose(velocities, [[0, 0, 0], [0, 16 * TIME_STEP, 0], [0, 0, 0]], atol=1e-4)
+
+    def test_several_tethers_a_vertex_and_anchors_that_are_none(self):
+        anchors = [[7, 7], [7, 0], [0, 4294967295]]
+        positions, _, _ = self.step([[1, 1], [0.5, 0.75], [0.5, 0.25]], anchors=anchors)
+        np.testing.assert_allclose(positions, [[0, 0, 0], [0.75, 0, 0], [0, 0.5, 0]], atol=1e-6)
+
+    def test_a_curtain_hangs_no_lower_than_its_tethers(self):
+        cloth = Grid(10)
+        rest = cloth.positions * [1, 1, 0]
+        anchors, lengths = apsl.tethers_to_pins(rest, cloth.triangles, cloth.pins, 2)
+        areas, ends = apsl.rest_areas(rest, cloth.triangles), []
+        for tethers in ({}, {"tether_anchors": anchors, "tether_lengths": lengths}):
+            made = limiter(cloth.triangles, cloth.vertex_count, integrates=True, tethers_per_vertex=2 * bool(tethers))
+            positions, velocities = rest, 0 * rest
+            for _ in range(60):
+                positions, velocities, stats = made.step(positions, velocities, cloth.inverse_masses, areas,
+                                                         sub_steps=10, acceleration=(0, 9.81, 0), damping=0.5, **tethers)
+                self.assertEqual(stats.status, "ok")
+            away = np.linalg.norm(positions[:, None] - positions[anchors], axis=2)
+            ends.append((away / np.maximum(lengths, 1e-9))[lengths > 0].max())
+        self.assertGreater(ends[0], 1.2)  # areas alone let it grow long
+        self.assertLess(ends[1], 1.02)
+
+    def test_how_they_are_made(self):
+        anchors, lengths = apsl.tethers_to_pins(CORNER, ONE_TRIANGLE, [0], 2, stretch=1.5)
+        self.assertEqual((anchors.dtype, lengths.dtype), (np.uint32, np.float32))
+        np.testing.assert_array_equal(anchors, 0)
+        np.testing.assert_array_equal(lengths, [[0, 0], [1.5, 0], [1.5, 0]])
+        # Two pinned pieces, the nearer one first; the first of them is an edge, and 4 nearest to its own end.
+        strip = [[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]]
+        points = [[x, y, 0] for x in (0, 1, 3) for y in (0, 1)]
+        anchors, lengths = apsl.tethers_to_pins(points, strip, np.array([5, 0, 1]), 2)
+        np.testing.assert_array_equal(anchors[2:5], [[0, 5], [1, 5], [5, 0]])
+        np.testing.assert_allclose(lengths[2:5], [[1, np.sqrt(5)], [1, 2], [1, 3]], rtol=1e-6)
+        np.testing.assert_array_equal(lengths[[0, 1, 5]], 0)
+        self.assertEqual(apsl.pinned_piece_count(strip, 6, [5, 0, 1]), 2)
+        self.assertEqual(apsl.pinned_piece_count(strip, 9, [5, 0, 8]), 2)  # in no triangle, 8 is no piece
+        self.assertEqual(apsl.pinned_piece_count(strip, 6, []), 0)
+        np.testing.assert_array_equal(apsl.tethers_to_pins(points, strip, [], 1)[1], np.zeros((6, 1)))
+
+
 class Cloth(unittest.TestCase):
     def test_area_change_shrinks_to_what_stats_say(self):
         cloth = Grid(12)

@@ -21,6 +21,9 @@ velocities.astype(np.float64)
 on_device = apsl.StrainLimiter([[0, 1, 2]], 3, context=1, position_stride=4)
 array = (2, 64)
 on_device.enqueue(3, array, 4, array, array, wait_for=[5], time_step=1 / 60, rest_shapes=array)
+anchors, lengths = apsl.tethers_to_pins(np.zeros((3, 3)), [[0, 1, 2]], [0], apsl.pinned_piece_count([[0, 1, 2]], 3, [0]))
+hanging = apsl.StrainLimiter([[0, 1, 2]], 3, integrates=True, tethers_per_vertex=anchors.shape[1])
+hanging.step([], [], [], [], tether_anchors=anchors, tether_lengths=2 * lengths)
 residual: float = on_device.read_stats(3).residual
 best: float = min(stats.max_area_change, apsl.area_change(velocities, [[0, 1, 2]], [1.0]).max())
 """
@@ -34,6 +37,8 @@ WRONG = {
     'on_device.enqueue("queue", 2, 4, 5, 6)': "arg-type",
     "on_device.enqueue(3, np.zeros((3, 3)), 4, 5, 6)": "arg-type",
     "stats.maximum": "attr-defined",
+    "apsl.StrainLimiter([[0, 1, 2]], 3, tethers_per_vertex=[1])": "call-overload",
+    'apsl.tethers_to_pins([], [], [], 1, stretch="1")': "arg-type",
 }
 
 

@@ -15,8 +15,10 @@ Arrays that live on the device already stay there, with pyopencl or without:
 
 from ._core import __version__
 from ._limiter import StrainLimiter
-from ._measures import area_change, devices, rest_areas, rest_hinges, rest_shapes
+from ._measures import (area_change, devices, pinned_piece_count, rest_areas, rest_hinges, rest_shapes,
+                        tethers_to_pins)
 from ._records import Device, DeviceOptions, Error, Options, Parameters, Stats
 
 __all__ = ["Device", "DeviceOptions", "Error", "Options", "Parameters", "Stats", "StrainLimiter", "__version__",
-           "area_change", "devices", "rest_areas", "rest_hinges", "rest_shapes"]
+           "area_change", "devices", "pinned_piece_count", "rest_areas", "rest_hinges", "rest_shapes",
+           "tethers_to_pins"]

@@ -15,6 +15,14 @@ def rest_hinges(positions: npt.ArrayLike, triangles: npt.ArrayLike) -> npt.NDArr
 def area_change(
     positions: npt.ArrayLike, triangles: npt.ArrayLike, rest_areas: npt.ArrayLike
 ) -> npt.NDArray[np.float64]: ...
+def tethers_to_pins(
+    rest_positions: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    pinned: npt.ArrayLike,
+    per_vertex: int,
+    stretch: float,
+) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.float32]]: ...
+def pinned_piece_count(triangles: npt.ArrayLike, vertex_count: int, pinned: npt.ArrayLike) -> int: ...
 def default_parameters() -> dict[str, Any]: ...
 
 class Limiter:

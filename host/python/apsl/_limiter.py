@@ -89,10 +89,11 @@ class StrainLimiter:
 
         queue: a pyopencl.CommandQueue of the context and device. Arrays: what limit() takes, 32-bit floats laid out as
         the options say, each a pyopencl.array.Array, a pyopencl.Buffer, or a pair of a buffer and an offset in bytes;
-        to be kept until the event completes. So are `rest_shapes`, `contacts`, `rest_hinges` and `accelerations`, and
-        where there is one for each triangle `regularization` and `stretch_ceiling`. velocities: None with
-        positions_only. wait_for: a list of events that the call starts after, besides those of the Arrays. In place of
-        any OpenCL object its handle as an integer.
+        to be kept until the event completes. So are `rest_shapes`, `contacts`, `rest_hinges`, `accelerations`,
+        `tether_lengths` and `tether_anchors`, which are 32-bit unsigned integers, and where there is one for each
+        triangle `regularization` and `stretch_ceiling`. velocities: None with positions_only. wait_for: a list of
+        events that the call starts after, besides those of the Arrays. In place of any OpenCL object its handle as an
+        integer.
         Returns a pyopencl.Event, or where pyopencl is not imported the handle of an event, which the caller releases.
         Raises Error for what does not fit, before anything is queued.
         """
@@ -111,7 +112,8 @@ class StrainLimiter:
         for name, option in _optional_arrays.items():
             if options[option]:
                 given[name] = settings.pop(name)
-        places = {name: _opencl.place(array, name, *layouts[name]) for name, array in given.items()}
+        places = {name: _opencl.place(array, name, "uint32" if name == "tether_anchors" else "float32", *layouts[name])
+                  for name, array in given.items()}
         before = _opencl.addresses(wait_for)
         for array in given.values():
             before += _opencl.events_of(array)
@@ -153,7 +155,8 @@ class StrainLimiter:
 
 _optional_arrays = {"regularization": "regularization_per_triangle", "rest_shapes": "limits_stretch",
                     "stretch_ceiling": "stretch_ceiling_per_triangle", "contacts": "keeps_contacts",
-                    "rest_hinges": "bends", "accelerations": "acceleration_per_vertex"}
+                    "rest_hinges": "bends", "accelerations": "acceleration_per_vertex",
+                    "tether_anchors": "tethers_per_vertex", "tether_lengths": "tethers_per_vertex"}
 
 
 def _check_arrays(call: str, options: dict[str, Any], settings: dict[str, Any]) -> None:
@@ -173,8 +176,10 @@ def _layouts(vertices: int, triangles: int, hinges: int,
         return (vertices, 3), (4 * options[f"{of}_stride"], 4 * options[f"{of}_component_stride"])
 
     numbers = (triangles,), (4,)
+    each = options["tethers_per_vertex"]
+    tethers = (vertices, each), (4 * each, 4)
     return {"positions": vectors("position"), "velocities": vectors("velocity"),
             "inverse_masses": ((vertices,), (4 * options["inverse_mass_stride"],)), "rest_areas": numbers,
             "regularization": numbers, "rest_shapes": ((triangles, 4), (16, 4)), "stretch_ceiling": numbers,
             "contacts": ((vertices, 8), (32, 4)), "rest_hinges": ((hinges, 2), (8, 4)),
-            "accelerations": vectors("position")}
+            "accelerations": vectors("position"), "tether_anchors": tethers, "tether_lengths": tethers}

@@ -86,12 +86,12 @@ def events_of(given: Any) -> list[int]:
     return [int(event.int_ptr) for event in given.events] if is_array(given) else []
 
 
-def place(given: Any, argument: str, shape: tuple[int, ...], strides: tuple[int, ...]) -> tuple[int, int]:
-    """A buffer and an offset in bytes. An Array must be float32 of that shape (a vector may have more components) and
-    those strides in bytes; of a Buffer the library checks the size."""
+def place(given: Any, argument: str, dtype: str, shape: tuple[int, ...], strides: tuple[int, ...]) -> tuple[int, int]:
+    """A buffer and an offset in bytes. An Array must be of that type, shape (a vector may have more components) and
+    strides in bytes; of a Buffer the library checks the size."""
     if is_array(given):
-        if given.dtype != "float32":
-            raise refuse(argument, f"dtype {given.dtype}", "float32")
+        if given.dtype != dtype:
+            raise refuse(argument, f"dtype {given.dtype}", dtype)
         got = tuple(given.shape)
         if len(got) != len(shape) or got[0] != shape[0] or got[1:] < shape[1:]:
             raise refuse(argument, f"shape {got}", str(shape))

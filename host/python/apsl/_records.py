@@ -30,6 +30,7 @@ class Options(TypedDict, total=False):
     keeps_contacts: bool  # `contacts` are then given in every call
     bends: bool  # hinges resist bending: `rest_hinges` are then given in every call, and `bending` counts
     acceleration_per_vertex: bool  # `accelerations` are then given in every call
+    tethers_per_vertex: int  # 0 to 16: above 0 `tether_anchors` and `tether_lengths` are given in every call
 
 
 class DeviceOptions(Options, total=False):
@@ -65,6 +66,10 @@ class Parameters(TypedDict, total=False):
     contacts: Union[npt.ArrayLike, DeviceArray]
     acceleration: Sequence[float]  # m/s², three, with integrates
     accelerations: Union[npt.ArrayLike, DeviceArray]  # m/s², [V, 3], with acceleration_per_vertex, beside acceleration
+    # [V, tethers_per_vertex], with that: pinned vertices, and how far from each a vertex may be, m, 0: no tether; see
+    # tethers_to_pins(). Anchors on the device are uint32
+    tether_anchors: Union[npt.ArrayLike, DeviceArray]
+    tether_lengths: Union[npt.ArrayLike, DeviceArray]
     damping: float  # 1/s, ≥ 0, with integrates
     rest_hinges: Union[npt.ArrayLike, DeviceArray]  # [H, 2], with bends: see rest_hinges()
     bending: float  # N·m, ≥ 0, with bends: the cloth's rigidity
