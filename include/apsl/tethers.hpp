@@ -13,8 +13,8 @@ namespace apsl {
 
 /// Buffers::tether_anchors and tether_lengths of one cloth: those of vertex v begin at Options::tethers_per_vertex · v.
 struct Tethers {
-    std::vector<std::uint32_t> anchors;
-    std::vector<float> lengths;  ///< m; 0: no tether
+    std::vector<std::uint32_t> anchors;  ///< pinned vertices of this cloth
+    std::vector<float> lengths;          ///< m; 0: no tether
 };
 
 /// Pieces of the mesh that are pinned: sets of pinned vertices that edges connect. A vertex wants a tether to each.
