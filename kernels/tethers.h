@@ -51,7 +51,8 @@ APSLK_INLINE float length_in_part(apslk_tethers tethers, ulong tether, uint vert
     if (!(length > 0.0f)) return 0.0f;
     const float3 apart =
         load_position(tethers.positions, vertex) - load_position(tethers.positions, tethers.anchors[tether]);
-    return length + share_left * fmax(sqrt(dot(apart, apart)) - length, 0.0f);
+    const float squared = dot(apart, apart);
+    return squared > length * length ? length + share_left * (sqrt(squared) - length) : length;
 }
 
 // How much longer the tethers of a vertex are than given, at least 1: where anchors are further apart than two tethers
@@ -62,7 +63,8 @@ APSLK_INLINE float tether_stretch(const float3* at, const float* lengths) {
         for (uint j = 0; j < k; ++j) {
             if (!(lengths[j] > 0.0f && lengths[k] > 0.0f)) continue;
             const float3 apart = at[k] - at[j];
-            stretch = fmax(stretch, sqrt(dot(apart, apart)) / (lengths[j] + lengths[k]));
+            const float squared = dot(apart, apart), together = lengths[j] + lengths[k];
+            if (squared > together * together) stretch = fmax(stretch, sqrt(squared) / together);
         }
     return stretch;
 }

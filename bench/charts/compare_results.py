@@ -18,7 +18,7 @@ OUR_COLOURS = ("#0072B2", "#56B4E9", "#003f6b", "#4a90c2", "#7fb3d5", "#1f4e79",
 OUR_MARKERS = ("o", "s", "D", "^", "v", "P", "X", "*")
 # Apart from the other blues: small steps, and what the library does by default.
 OWN_COLOURS = {"apsl_small_steps": "#1a1aff", "apsl_chebyshev": "#00a0ff", "apsl_defaults": "#000000",
-               "apsl_ceiling": "#5b2be0"}
+               "apsl_ceiling": "#5b2be0", "apsl_tethers": "#0b8f8f"}
 
 
 def results_parser(description, scene=False):

@@ -13,6 +13,7 @@ namespace {
 
 using scenes::InputError;
 
+const std::string han = "Han 2015";
 const std::string sub_steps_path = "strain_limiting.sub_steps";
 const std::string first_regularization_path = "strain_limiting.first_regularization";
 const std::string regularization_path = "strain_limiting.regularization";
@@ -29,6 +30,24 @@ MethodParameter regularization(std::vector<double> sweep) {
 }
 
 // Distance constraints as a whole integrator.
+// With no springs in front: the limiter takes the whole step.
+ComparedMethod stand_alone(std::string name, std::string title, double tethers) {
+    const Parameters defaults;
+    return {
+        .name = std::move(name),
+        .title = std::move(title),
+        .citation = han,
+        .kind = MethodKind::ours,
+        .parameters = {{.name = stretch_ceiling_path, .standard = 1.1, .least = 1.01, .sweep = {}},
+                       {.name = sub_steps_path, .standard = defaults.sub_steps, .least = 2.0, .sweep = {20, 30, 60}},
+                       {.name = regularization_path,
+                        .standard = static_cast<double>(defaults.regularization),
+                        .least = 1.0,
+                        .sweep = {}}},
+        .settings = {{"strain_limiting", nlohmann::json::object()},
+                     {"integrator", {{"stand_alone", {{"tethers", tethers}}}}}}};
+}
+
 ComparedMethod distances(std::string name, std::string title, std::string citation, double tether_length) {
     const methods::TetherSettings standard;
     return {
@@ -68,7 +87,6 @@ ComparedMethod in_small_steps(std::string name, std::string title, const methods
 }
 
 std::vector<ComparedMethod> make_compared_methods() {
-    const std::string han = "Han 2015";
     std::vector<ComparedMethod> table;
     table.push_back({.name = "none",
                      .title = "Springs alone",
@@ -169,17 +187,8 @@ std::vector<ComparedMethod> make_compared_methods() {
              {{.name = stretch_ceiling_path, .standard = 1.1, .least = 1.01, .sweep = {}},
               {.name = sub_steps_path, .standard = Parameters{}.sub_steps, .least = 2.0, .sweep = {20, 30, 60}}},
          .settings = {{"strain_limiting", nlohmann::json::object()}}});
-    // The same with no springs in front: the limiter takes the whole step.
-    table.push_back(
-        {.name = "apsl_stand_alone",
-         .title = "Area preserving, stretch ceiling, stand-alone",
-         .citation = han,
-         .kind = MethodKind::ours,
-         .parameters =
-             {{.name = stretch_ceiling_path, .standard = 1.1, .least = 1.01, .sweep = {}},
-              {.name = sub_steps_path, .standard = Parameters{}.sub_steps, .least = 2.0, .sweep = {20, 30, 60}}},
-         .settings = {{"strain_limiting", nlohmann::json::object()},
-                      {"integrator", {{"stand_alone", nlohmann::json::object()}}}}});
+    table.push_back(stand_alone("apsl_stand_alone", "Area preserving, stretch ceiling, stand-alone", 0.0));
+    table.push_back(stand_alone("apsl_tethers", "Area preserving, stretch ceiling, tethers, stand-alone", 1.0));
     table.push_back(
         {.name = "apsl_direct",
          .title = "Area preserving, direct solves",

@@ -84,7 +84,7 @@ struct StandAloneIntegrator {
     double damping = 0.5;  ///< 1/s, ≥ 0
     double bending = 0.0;  ///< N·m, ≥ 0
     /// ≥ 0; Options::tethers_per_vertex: tethers to the pins, this times as long as the way there at rest. 0: none.
-    double tethers = 0.0;
+    double tethers = 1.0;
 };
 
 using Integrator =

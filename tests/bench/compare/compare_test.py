@@ -56,7 +56,7 @@ class Compare(unittest.TestCase):
         keys = [json.dumps([run["method"], run["parameters"]], sort_keys=True) for run in runs]
         self.assertEqual(len(keys), len(set(keys)))
         ours = {"none", "springs", "apsl", "apsl_printed", "apsl_adaptive", "apsl_direct", "apsl_small_steps", "apsl_chebyshev",
-                "apsl_ceiling", "apsl_stand_alone", "tethers", "pbd_small_steps", "strain_based_dynamics_small_steps",
+                "apsl_ceiling", "apsl_stand_alone", "apsl_tethers", "tethers", "pbd_small_steps", "strain_based_dynamics_small_steps",
                 "apsl_several_steps"}
         self.assertLess(ours, {run["method"] for run in runs})
         for run in runs:

@@ -85,7 +85,8 @@ TEST_CASE("a stand-alone scene is a step of our limiter, which no other method t
 
 TEST_CASE("ours stand-alone needs no scene that is") {
     const PreparedScene alone = prepared("apsl_stand_alone", {{"strain_limiting.sub_steps", 20}});
-    CHECK(alone.document["integrator"] == nlohmann::json{{"stand_alone", nlohmann::json::object()}});
+    CHECK(alone.document["integrator"] == nlohmann::json{{"stand_alone", {{"tethers", 0.0}}}});
+    CHECK(prepared("apsl_tethers", {}).document["integrator"] == nlohmann::json{{"stand_alone", {{"tethers", 1.0}}}});
     CHECK(alone.document["strain_limiting"]["stretch_ceiling"] == 1.1);
     CHECK(alone.document["strain_limiting"]["sub_steps"] == 20);
 }
