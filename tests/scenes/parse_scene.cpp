@@ -84,12 +84,20 @@ TEST_CASE("a stand-alone scene is whole steps under its gravity and damping") {
     CHECK(scene.strain_limiting->parameters.acceleration == std::array<float, 3>{1.0f, -2.0f, 3.0f});
     CHECK(scene.strain_limiting->parameters.damping == 0.25f);
     CHECK(!scene.strain_limiting->options.bends);
+    CHECK(scene.strain_limiting->tethers == 1.0f);
     const Scene stiff = parse(R"({"mesh": {"grid": {}}, "integrator": {"stand_alone": {"bending": 0.5}},
                                   "strain_limiting": {"stretch_ceiling": 1.1}})");
     CHECK(stiff.strain_limiting->options.bends);
     CHECK(stiff.strain_limiting->parameters.bending == 0.5f);
+    const Scene loose = parse(R"({"mesh": {"grid": {}}, "integrator": {"stand_alone": {"tethers": 1.25}},
+                                  "strain_limiting": {}})");
+    CHECK(loose.strain_limiting->tethers == 1.25f);
+    CHECK_THROWS_WITH(parse(R"({"mesh": {"grid": {}}, "integrator": {"stand_alone": {"tethers": -1}},
+                               "strain_limiting": {}})"),
+                      "folder/scene.json: integrator.stand_alone.tethers: expected a number ≥ 0, got -1");
     const Scene filtered = parse(R"({"mesh": {"grid": {}}, "strain_limiting": {}})");
     CHECK(!filtered.strain_limiting->options.integrates);
+    CHECK(filtered.strain_limiting->tethers == 0.0f);
     CHECK(filtered.strain_limiting->parameters.acceleration == std::array<float, 3>{});
 }
 
