@@ -178,7 +178,8 @@ def whole_frame_rows(results):
     for scene in dict.fromkeys(run["scene"] for run in runs):
         for run in (run for run in runs if run["scene"] == scene and held(run)):
             count = run["parameters"].get("small_steps", run["parameters"].get("strain_limiting.sub_steps"))
-            setting = run["title"] + (f", {count}" if count is not None else "")
+            alpha = run["parameters"].get("strain_limiting.regularization")
+            setting = run["title"] + (f", {count}" if count is not None else "") + (f", α {alpha:g}" if alpha else "")
             rows.append(f"| {scene} | {setting} | {shown(run[SETTLED_AREA])} | {1.0 + run[SETTLED_EDGE]:.3f} | "
                         f"{1.0 + run[SETTLED_EXCESS]:.3f} | {plain(run['milliseconds'])} |")
     return rows

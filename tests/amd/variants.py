@@ -42,22 +42,26 @@ _ACCELERATIONS_APART = ({"APSLK_ACCELERATION_PER_VERTEX": 1, "APSLK_POSITION_STR
                         {"APSLK_ACCELERATION_PER_VERTEX": 1, "APSLK_POSITION_STRIDE": 4})
 
 # Anchors are read as the caller has them, in every layout, but by no other option's code.
-_TETHERS_APART = ({"APSLK_TETHERS": 2, "APSLK_INTEGRATES": 0}, {"APSLK_TETHERS": 2, "APSLK_ACCELERATION_PER_VERTEX": 1})
+_TETHERS_APART = ({"APSLK_TETHERS": 2, "APSLK_INTEGRATES": 0}, {"APSLK_TETHERS": 2, "APSLK_ACCELERATION_PER_VERTEX": 1},
+                  {"APSLK_TETHERS": 2, "APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0})
+
+# What has neither bending nor tethers in it, though it includes what has.
+_WITHOUT_FORCES = ({"APSLK_BENDS": 1}, {"APSLK_TETHERS": 2})
 
 # Combinations that host/ never builds for a GPU (host/limiter_options.cpp), or that make no other code.
 NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"APSLK_REGULARIZATION_PER_TRIANGLE": 1},
                                            {"APSLK_CHEBYSHEV": 1}, {"APSLK_LIMITS_STRETCH": 1},
                                            {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}, {"APSLK_INTEGRATES": 1},
                                            {"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_TETHERS": 2}),
-                "store_step.cl": ({"APSLK_TETHERS": 2}, {"APSLK_INTEGRATES": 0}, {"APSLK_POSITIONS_ONLY": 1}, {"APSLK_LIMITS_STRETCH": 1},
+                "store_step.cl": (*_WITHOUT_FORCES, {"APSLK_INTEGRATES": 0}, {"APSLK_POSITIONS_ONLY": 1}, {"APSLK_LIMITS_STRETCH": 1},
                                   *_CONTACTS_APART, *_ACCELERATIONS_APART),
                 **{file: ({"APSLK_LIMITS_STRETCH": 1},) for file in ("matrix_free_consistent.cl", "finish_solve.cl")},
-                "predict_positions.cl": ({"APSLK_TETHERS": 2}, {"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
+                "predict_positions.cl": (*_WITHOUT_FORCES, {"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
                                          *_CONTACTS_APART),
-                "start_small_steps.cl": (*_TETHERS_APART, {"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
+                "start_small_steps.cl": ({"APSLK_BENDS": 1}, *_TETHERS_APART, {"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
                                          {"APSLK_KEEPS_CONTACTS": 1}, *_ACCELERATIONS_APART),
-                "update_velocities.cl": ({"APSLK_TETHERS": 2}, {"APSLK_LIMITS_STRETCH": 1}, {"APSLK_INTEGRATES": 1}, *_CONTACTS_APART),
-                "gather_displacements.cl": (*_TETHERS_APART, {"APSLK_TETHERS": 2, "APSLK_WARM_START_SUB_STEPS": 8},
+                "update_velocities.cl": (*_WITHOUT_FORCES, {"APSLK_LIMITS_STRETCH": 1}, {"APSLK_INTEGRATES": 1}, *_CONTACTS_APART),
+                "gather_displacements.cl": ({"APSLK_BENDS": 1}, *_TETHERS_APART, {"APSLK_TETHERS": 2, "APSLK_WARM_START_SUB_STEPS": 8},
                                             {"APSLK_TETHERS": 2, "APSLK_REGULARIZATION_PER_TRIANGLE": 1},
                                             *_CONTACTS_APART, *_ACCELERATIONS_APART,
                                             {"APSLK_ACCELERATION_PER_VERTEX": 1, "APSLK_WARM_START_SUB_STEPS": 8},
@@ -68,21 +72,21 @@ NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"
                                             {"APSLK_WARM_START_SUB_STEPS": 8, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 1, "APSLK_CHEBYSHEV": 1},
                                             {"APSLK_POSITION_STRIDE": 4, "APSLK_CHEBYSHEV": 1}),
-                "rest_areas.cl": ({"APSLK_TETHERS": 2}, {"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_ACCELERATION_PER_VERTEX": 1}),
+                "rest_areas.cl": (*_WITHOUT_FORCES, {"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_ACCELERATION_PER_VERTEX": 1}),
                 # Positions are read as rest_areas.cl reads them.
-                "rest_hinges.cl": ({"APSLK_TETHERS": 2}, {"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_ACCELERATION_PER_VERTEX": 1},
+                "rest_hinges.cl": ({"APSLK_TETHERS": 2}, {"APSLK_BENDS": 0}, {"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_ACCELERATION_PER_VERTEX": 1},
                                    {"APSLK_INTEGRATES": 0}, {"APSLK_LIMITS_STRETCH": 0},
                                    {"APSLK_POSITION_STRIDE": 1}, {"APSLK_POSITION_STRIDE": 4}),
                 "bend_hinges.cl": ({"APSLK_INTEGRATES": 0},),
                 "solve_control.cl": ({"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_ACCELERATION_PER_VERTEX": 1},
-                                     {"APSLK_BENDS": 1, "APSLK_INTEGRATES": 0}, {"APSLK_TETHERS": 2, "APSLK_INTEGRATES": 0},
-                                     {"APSLK_TETHERS": 2, "APSLK_BENDS": 1}),
-                "order_triangle_values.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0}, {"APSLK_POSITIONS_ONLY": 1},
+                                     {"APSLK_BENDS": 1, "APSLK_INTEGRATES": 0},
+                                     {"APSLK_TETHERS": 2}),  # as with bending
+                "order_triangle_values.cl": ({"APSLK_TETHERS": 2}, {"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0}, {"APSLK_POSITIONS_ONLY": 1},
                                              {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1, "APSLK_LIMITS_STRETCH": 0}),
-                "measure_area_change.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0},
+                "measure_area_change.cl": ({"APSLK_TETHERS": 2}, {"APSLK_CHEBYSHEV": 1, "APSLK_LIMITS_STRETCH": 0},
                                            {"APSLK_REGULARIZATION_PER_TRIANGLE": 1}, {"APSLK_POSITIONS_ONLY": 1},
                                            {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1}),
-                "assemble_gradients.cl": ({"APSLK_CHEBYSHEV": 1, "APSLK_POSITIONS_ONLY": 1},
+                "assemble_gradients.cl": ({"APSLK_TETHERS": 2}, {"APSLK_CHEBYSHEV": 1, "APSLK_POSITIONS_ONLY": 1},
                                           {"APSLK_STRETCH_CEILING_PER_TRIANGLE": 1})}
 
 

@@ -198,8 +198,8 @@ class Refused(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, f"unexpected keyword argument '{name}'"):
                 self.limiter.limit(**self.arguments, **{name: good[name]})
         self.refuse("tethers_per_vertex is 1, which needs integrates", limiter, ONE_TRIANGLE, 3, tethers_per_vertex=1)
-        self.refuse("tethers_per_vertex is 17, expected a whole number >= 0 and <= 16", limiter, ONE_TRIANGLE, 3,
-                    integrates=True, tethers_per_vertex=17)
+        self.refuse("tethers_per_vertex is 5, expected a whole number >= 0 and <= 4", limiter, ONE_TRIANGLE, 3,
+                    integrates=True, tethers_per_vertex=5)
         self.refuse("tethers_per_vertex: got True, expected an integer", limiter, ONE_TRIANGLE, 3, integrates=True,
                     tethers_per_vertex=True)
         self.assertEqual(made.step(**good)[2].status, "ok")  # still usable
@@ -216,7 +216,7 @@ class Refused(unittest.TestCase):
             ({"pinned": [[0]]}, "pinned: got shape (1, 1), expected (rows,)"),
             ({"pinned": [0, -1]}, "pinned: got vertex -1 in row 1, expected 0 to 4294967295"),
             ({"pinned": [3]}, "pinned vertex 3, expected one below 3"),
-            ({"per_vertex": 0}, "per_vertex is 0, expected a whole number >= 1"),
+            ({"per_vertex": 0}, "per_vertex is 0, expected a whole number from 1 to 4"),
             ({"per_vertex": -1}, "per_vertex: got -1, expected an integer"),
             ({"per_vertex": 1.0}, "per_vertex: got 1.0, expected an integer"),
             ({"stretch": 0}, "stretch is 0"),

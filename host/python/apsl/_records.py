@@ -30,7 +30,7 @@ class Options(TypedDict, total=False):
     keeps_contacts: bool  # `contacts` are then given in every call
     bends: bool  # hinges resist bending: `rest_hinges` are then given in every call, and `bending` counts
     acceleration_per_vertex: bool  # `accelerations` are then given in every call
-    tethers_per_vertex: int  # 0 to 16: above 0 `tether_anchors` and `tether_lengths` are given in every call
+    tethers_per_vertex: int  # 0 to 4: above 0 `tether_anchors` and `tether_lengths` are given in every call
 
 
 class DeviceOptions(Options, total=False):
