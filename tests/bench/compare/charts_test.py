@@ -152,7 +152,7 @@ class Charts(unittest.TestCase):
         self.assertIn("| ceiling 1.1, 20 sub-steps | 1 | 0.3 % | 1.006 | 1.009 | 3.00 | yes |", said)
         self.assertIn("| ceiling 1.1, 30 sub-steps | 1 | 0.4 % | 1.008 | 1.012 | 3.50 | no |", said)
         self.assertIn("| none | 1 | 60 % | 2.200 | 2.800 | – | no |", said)
-        self.assertIn("| curtain | apsl, 10 | 4 % | 1.080 | 1.120 | 7 |", said)  # 2 ms in the limiter, 5 for the rest
+        self.assertIn("| curtain | apsl, 10, α 1.2 | 4 % | 1.080 | 1.120 | 7 |", said)  # 2 ms in the limiter, 5 for the rest
         for line in said.splitlines():
             self.assertNotRegex(line.removeprefix("| |"), r"\| +\|", line)
 
