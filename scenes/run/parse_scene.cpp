@@ -126,7 +126,7 @@ Integrator parse_integrator(SceneObject object) {
         StandAloneIntegrator stand_alone;
         stand_alone.damping = settings.number("damping", stand_alone.damping, Range::at_least(0.0));
         stand_alone.bending = settings.number("bending", stand_alone.bending, Range::at_least(0.0));
-        stand_alone.tethers = settings.number("tethers", stand_alone.tethers, Range::at_least(0.0));
+        stand_alone.tethers = settings.number("tethers", stand_alone.tethers, Range{.min = 0.0, .max = 1e6});
         // What it had before, and no key of it now.
         if (settings.value().json->contains("bend_stiffness"))
             SceneObject(settings.value())

@@ -83,7 +83,7 @@ struct BendingSpringsIntegrator {
 struct StandAloneIntegrator {
     double damping = 0.5;  ///< 1/s, ≥ 0
     double bending = 0.0;  ///< N·m, ≥ 0
-    /// ≥ 0; Options::tethers_per_vertex: tethers to the pins, this times as long as the way there at rest. 0: none.
+    /// 0 to 10⁶: tethers to the pins, this times as long as the way there at rest. 0: none.
     double tethers = 1.0;
 };
 

@@ -2,6 +2,7 @@
 #include "run/scene_tethers.hpp"
 
 #include "fields.hpp"
+#include "run/opencl_cloth.hpp"
 #include "run/pinned_vertices.hpp"
 
 #include <apsl/reference.hpp>
@@ -30,7 +31,8 @@ std::uint32_t tethers_per_vertex(const ClothState& cloth) {
 }
 
 Tethers scene_tethers(const ClothState& cloth, const StrainLimiting& settings) {
-    const std::vector<float> rest_positions(cloth.rest_positions.begin(), cloth.rest_positions.end());
+    // Differences alone count, which 32 bits hold badly far from the origin.
+    const std::vector<float> rest_positions = to_float_around(origin_for(cloth.rest_positions), cloth.rest_positions);
     const auto stretch = static_cast<float>(rest_length_factor(cloth) * static_cast<double>(settings.tethers));
     return tethers_to_pins(*cloth.topology, rest_positions, pinned_vertices(cloth), settings.options.tethers_per_vertex,
                            stretch);

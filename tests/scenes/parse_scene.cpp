@@ -295,6 +295,8 @@ TEST_CASE("what is wrong is named by its path, with what was expected") {
          "integrator: stand_alone: bends is on, which needs limits_stretch: areas and bending alone let a cloth flow "
          "in "
          "its plane"},
+        {R"("integrator": {"stand_alone": {"tethers": 1e39}}, "strain_limiting": {})",
+         "integrator.stand_alone.tethers: expected a number ≥ 0 and ≤ 1000000, got 1e+39"},
         {R"("integrator": {"stand_alone": {"damping": -1}}, "strain_limiting": {})",
          "integrator.stand_alone.damping: expected a number ≥ 0, got -1"},
         {R"("integrator": {"stand_alone": {}})",

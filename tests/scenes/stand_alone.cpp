@@ -2,6 +2,7 @@
 // Whole steps of a stand-alone cloth: on the device, by the reference, and what the report says of them.
 #include "run/filter_stage.hpp"
 #include "run/parse_scene.hpp"
+#include "run/scene_tethers.hpp"
 #include "run/simulation.hpp"
 #include "scenes/sample_files.hpp"
 
@@ -260,4 +261,15 @@ TEST_CASE("stand-alone: a number that is not finite ends the run and is named") 
     CHECK(simulation.breakdown()->step == 0);
     CHECK(simulation.breakdown()->stage == "stand_alone");
     CHECK_THAT(simulation.breakdown()->what, Catch::Contains("first at vertex 100"));
+}
+
+TEST_CASE("stand-alone: tethers are as long far from the origin as near to it", "[scenes][tethers]") {
+    const Scene scene = parse(corners);
+    SceneCloth cloth = make_scene_cloth(scene);
+    const StrainLimiting limiting = limiting_of(scene, cloth.state);
+    const Tethers near = scene_tethers(cloth.state, limiting);
+    for (double& coordinate : cloth.state.rest_positions) coordinate += 1e7;
+    const Tethers far = scene_tethers(cloth.state, limiting);
+    CHECK(far.anchors == near.anchors);
+    for (std::size_t t = 0; t < near.lengths.size(); ++t) CHECK(far.lengths[t] == Approx(near.lengths[t]).margin(1e-6));
 }
