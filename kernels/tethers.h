@@ -44,17 +44,6 @@ APSLK_INLINE float3 anchor_at(apslk_tethers tethers, uint anchor, float time) {
 }
 
 #if APSLK_TETHERS
-// How long a tether is where this share of the step is left. A vertex that starts the step out of reach is led back
-// over it.
-APSLK_INLINE float length_in_part(apslk_tethers tethers, ulong tether, uint vertex, float share_left) {
-    const float length = tethers.lengths[tether];
-    if (!(length > 0.0f)) return 0.0f;
-    const float3 apart =
-        load_position(tethers.positions, vertex) - load_position(tethers.positions, tethers.anchors[tether]);
-    const float squared = dot(apart, apart);
-    return squared > length * length ? length + share_left * (sqrt(squared) - length) : length;
-}
-
 // How much longer the tethers of a vertex are than given, at least 1: where anchors are further apart than two tethers
 // together reach, nothing could be within reach of both.
 APSLK_INLINE float tether_stretch(const float3* at, const float* lengths) {
@@ -70,10 +59,10 @@ APSLK_INLINE float tether_stretch(const float3* at, const float* lengths) {
 }
 #endif
 
-// A vertex and Δt times its velocity, such that the part ends within reach of its anchors and no faster away from them
-// than they go. An anchor outside of the cloth holds nothing.
-APSLK_INLINE void keep_within_reach(float3* x, float3* motion, apslk_move move, apslk_tethers tethers,
-                                    apslk_cloth cloth, uint vertex) {
+// Δt times the velocity of a vertex at x, without what would lead it out of reach of its anchors in this part: a tether
+// takes speed away from its anchor, moves nothing and pulls nothing back. An anchor outside of the cloth holds nothing.
+APSLK_INLINE float3 within_reach(float3 x, float3 motion, apslk_move move, apslk_tethers tethers, apslk_cloth cloth,
+                                 uint vertex) {
 #if APSLK_TETHERS
     const ulong first = (ulong)vertex * APSLK_TETHERS;
     float3 at[APSLK_TETHERS];
@@ -81,32 +70,29 @@ APSLK_INLINE void keep_within_reach(float3* x, float3* motion, apslk_move move, 
     for (uint k = 0; k < APSLK_TETHERS; ++k) {
         const uint anchor = tethers.anchors[first + k];
         const bool holds = anchor - cloth.vertex_begin < cloth.vertex_count;
-        lengths[k] = holds ? length_in_part(tethers, first + k, vertex, 1.0f - move.time / move.time_step) : 0.0f;
+        lengths[k] = holds ? tethers.lengths[first + k] : 0.0f;
         at[k] = holds ? anchor_at(tethers, anchor, move.time) : (float3)(0.0f);
     }
     const float stretch = tether_stretch(at, lengths);
-    float3 end = fma((float3)(move.share), *motion, *x);
-    bool held = false;
     for (uint k = 0; k < APSLK_TETHERS; ++k) {
         const float reach = stretch * lengths[k];
-        const float3 from = end - at[k];
+        const float3 from = fma((float3)(move.share), motion, x) - at[k];
         const float squared = dot(from, from);
         if (!(reach > 0.0f && squared > reach * reach)) continue;
-        const float3 away = from / sqrt(squared);
+        const float distance = sqrt(squared);
+        const float3 away = from / distance;
         const float3 anchor_motion = move.time_step * load_velocity(tethers.velocities, tethers.anchors[first + k]);
-        end = at[k] + reach * away;
-        *motion -= fmax(dot(*motion - anchor_motion, away), 0.0f) * away;
-        held = true;
+        const float outwards = fmax(dot(motion - anchor_motion, away), 0.0f);
+        motion -= fmin((distance - reach) / move.share, outwards) * away;
     }
-    if (held) *x = end - move.share * *motion;
 #else
     (void)x;
-    (void)motion;
     (void)move;
     (void)tethers;
     (void)cloth;
     (void)vertex;
 #endif
+    return motion;
 }
 
 #endif

@@ -100,9 +100,8 @@ APSLK_INLINE void begin_small_steps(apslk_cloth cloth, bool active, float time_s
         const float4 start = motion[place];
         const apslk_move first_part = {part, part * time_step, time_step};
         float3 step = time_step * after_free_part(free, place, velocity, start.w);
-        float3 x = start.xyz;
-        if (start.w > 0.0f) keep_within_reach(&x, &step, first_part, tethers, cloth, vertex);
-        moved[place] = (float4)(fma((float3)(part), step, x), start.w);
+        if (start.w > 0.0f) step = within_reach(start.xyz, step, first_part, tethers, cloth, vertex);
+        moved[place] = (float4)(fma((float3)(part), step, start.xyz), start.w);
         motion[place] = (float4)(step, start.w);
         total_correction[place] = (float4)(0.0f);
     }
@@ -230,10 +229,8 @@ APSLK_INLINE void advance_vertices(apslk_cloth cloth, bool active, apslk_small_s
             if (onward > 0.0f) {
                 const float time = (float)(small_step.sub_step + 2) * onward * touched.time_step;
                 const apslk_move next_part = {onward, time, touched.time_step};
-                float3 at = x.xyz, free_step = after_free_part(free, i, step.xyz, given);
-                keep_within_reach(&at, &free_step, next_part, tethers, cloth, touched.vertex_order[i]);
-                x.xyz = at;
-                step.xyz = free_step;
+                const float3 free_step = after_free_part(free, i, step.xyz, given);
+                step.xyz = within_reach(x.xyz, free_step, next_part, tethers, cloth, touched.vertex_order[i]);
             }
             motion[i] = (float4)(step.xyz, given);
 #else

@@ -21,9 +21,10 @@ struct Tethers {
 APSL_API std::size_t pinned_piece_count(const Topology& topology, std::span<const std::uint32_t> pinned);
 
 /// Tethers of every vertex that is not pinned to the nearest pinned vertex of each of the `per_vertex` nearest pinned
-/// pieces, as long as the way there over the surface at rest times `stretch`. Ways go straight across triangles where
-/// the mesh is flat, and are never too short there. With several cloths in the buffers, add to the anchors what the
-/// vertices before them count. None, of length 0, where a vertex lies at its pin, or further off than a float tells.
+/// pieces, as long as the way there over the surface at rest times `stretch`. Ways go straight across well-shaped
+/// triangles, and are longer over obtuse ones; over a flat mesh they are never too short. With several cloths in the
+/// buffers, add to the anchors what the vertices before them count. None, of length 0, where a vertex lies at its pin,
+/// or further off than a float tells.
 ///
 /// `rest_positions`: m, [3V]. `pinned`: vertices, in any order. Takes about per_vertex · V log V.
 /// Throws Error(invalid_argument): sizes that do not fit, a position that is not finite, a pinned vertex ≥ V,

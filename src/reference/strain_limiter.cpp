@@ -221,8 +221,9 @@ struct BasicStrainLimiter<Real>::Implementation {
     void keep_within_reach(const Buffers<Real>& buffers, const Move<Real>& move) {
         for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i) {
             if (!(buffers.inverse_masses[i] > Real(0))) continue;
-            Eigen::Map<Vector3<Real>> x(moved.data() + 3 * i), step(motion.data() + 3 * i);
-            reference::keep_within_reach<Real>(x, step, move, holds(move, buffers, options.tethers_per_vertex, i));
+            const Eigen::Map<Vector3<Real>> x(moved.data() + 3 * i);
+            Eigen::Map<Vector3<Real>> step(motion.data() + 3 * i);
+            step = within_reach<Real>(x, step, move, holds(move, buffers, options.tethers_per_vertex, i));
         }
     }
 

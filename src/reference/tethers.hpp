@@ -31,7 +31,7 @@ struct Hold {
     Real reach;
 };
 
-/// What holds `vertex`. One that starts the step out of reach is led back over it. Anchors go straight on with the
+/// What holds `vertex`. Anchors go straight on with the
 /// velocities that they have at the start of the step, as pinned vertices do. Where they are further apart than two
 /// tethers together reach, nothing could be within reach of both: then all tethers of the vertex are longer in the same
 /// ratio.
@@ -43,11 +43,8 @@ std::vector<Hold<Real>> holds(const Move<Real>& move, const Buffers<Real>& buffe
         const std::size_t anchor = buffers.tether_anchors[t];
         if (!(buffers.tether_lengths[t] > Real(0)) || 3 * anchor >= buffers.positions.size()) continue;
         const Vector3<Real> velocity = position(std::span<const Real>(buffers.velocities), anchor);
-        const Vector3<Real> start = position(buffers.positions, anchor);
-        const Real length = buffers.tether_lengths[t],
-                   excess = std::max((position(buffers.positions, vertex) - start).norm() - length, Real(0));
-        found.push_back({start + move.time * velocity, move.time_step * velocity,
-                         length + (Real(1) - move.time / move.time_step) * excess});
+        found.push_back({position(buffers.positions, anchor) + move.time * velocity, move.time_step * velocity,
+                         buffers.tether_lengths[t]});
     }
     Real stretch = Real(1);
     for (const Hold<Real>& a : found)
@@ -56,22 +53,20 @@ std::vector<Hold<Real>> holds(const Move<Real>& move, const Buffers<Real>& buffe
     return found;
 }
 
-/// A vertex at x and Δt times its velocity, such that the part ends within reach of its anchors and no faster away from
-/// them than they go.
+/// Δt times the velocity of a vertex at x, without what would lead it out of reach in this part: a tether takes speed
+/// away from its anchor, moves nothing and pulls nothing back.
 template <class Real>
-void keep_within_reach(Eigen::Ref<Vector3<Real>> x, Eigen::Ref<Vector3<Real>> motion, const Move<Real>& move,
-                       const std::vector<Hold<Real>>& holds) {
-    Vector3<Real> end = x + move.share * motion;
-    bool held = false;
+Vector3<Real> within_reach(const Vector3<Real>& x, Vector3<Real> motion, const Move<Real>& move,
+                           const std::vector<Hold<Real>>& holds) {
     for (const Hold<Real>& hold : holds) {
-        const Vector3<Real> from = end - hold.at;
-        if (!(from.norm() > hold.reach)) continue;
+        const Vector3<Real> from = x + move.share * motion - hold.at;
+        const Real excess = from.norm() - hold.reach;
+        if (!(excess > Real(0))) continue;
         const Vector3<Real> away = from.normalized();
-        end = hold.at + hold.reach * away;
-        motion -= std::max((motion - hold.motion).dot(away), Real(0)) * away;
-        held = true;
+        const Real outwards = std::max((motion - hold.motion).dot(away), Real(0));
+        motion -= std::min(excess / move.share, outwards) * away;
     }
-    if (held) x = end - move.share * motion;
+    return motion;
 }
 
 }  // namespace apsl::reference
