@@ -273,3 +273,33 @@ TEST_CASE("stand-alone: tethers are as long far from the origin as near to it", 
     CHECK(far.anchors == near.anchors);
     for (std::size_t t = 0; t < near.lengths.size(); ++t) CHECK(far.lengths[t] == Approx(near.lengths[t]).margin(1e-6));
 }
+
+TEST_CASE("tethers of a stand-alone cloth: what is held out of their reach is not thrown about") {
+    // Each holds some vertices further from their pins than the tethers are long: a ball that lifts a sheet with pinned
+    // corners, a start that is stretched, and tethers that are too short.
+    const auto greatest = [](const std::string& more, const std::string& stand_alone) {
+        const Scene scene = parse_scene(
+            nlohmann::json::parse(
+                R"({"mesh": {"grid": {"vertices": [13, 13], "plane": "horizontal"}}, "integrator": {"stand_alone": )" +
+                stand_alone + R"(}, "strain_limiting": {"stretch_ceiling": 1.1}, )" + more + "}"),
+            "scene.json");
+        double area_change = 0.0, speed = 0.0;
+        for (const FrameReport& frame : run(scene, Backend::opencl, 60).frames) {
+            area_change = std::max(area_change, frame.max_area_change);
+            speed = std::max(speed, frame.max_speed);
+        }
+        return std::pair(area_change, speed);
+    };
+    const std::string ball = R"("pins": [{"vertices": [0, 12, 156, 168]}], "colliders": [{"sphere": {
+        "center": [0, -0.35, 0], "radius": 0.2}, "motion": {"translate": {"velocity": [0, 0.5, 0]}, "stop": 1}}])";
+    const std::string stretched = R"("pins": [{"vertices": [0, 12]}], "start": {"scale": [1.2, 1.2, 1.2]})";
+    const std::string plain = R"("pins": [{"vertices": [0, 12]}])";
+    for (const auto& [more, tethered] : {std::pair(ball, std::string("{}")), std::pair(stretched, std::string("{}")),
+                                         std::pair(plain, std::string(R"({"tethers": 0.9})"))}) {
+        const auto [area_change, speed] = greatest(more, tethered);
+        const auto [area_change_without, speed_without] = greatest(more, R"({"tethers": 0})");
+        CAPTURE(more, area_change, area_change_without, speed, speed_without);
+        CHECK(area_change <= 1.5 * area_change_without);
+        CHECK(speed <= 1.5 * speed_without);
+    }
+}
