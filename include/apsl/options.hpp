@@ -97,9 +97,9 @@ struct Options {
     /// Each vertex has an acceleration of its own beside Parameters::acceleration, as of wind (docs/formulation.md, A
     /// whole step): Buffers::accelerations is given with every call. Needs integrates.
     bool acceleration_per_vertex = false;
-    /// Tethers a vertex, up to 4: it is kept within a length of each of its anchors, which are pinned vertices, in
-    /// every small step but the last (docs/formulation.md, Tethers). Buffers::tether_anchors and tether_lengths are
-    /// given with every call. Needs integrates.
+    /// Tethers a vertex, up to 4: every small step but the last takes the speed that would lead it further from an
+    /// anchor, a pinned vertex, than the tether is long (docs/formulation.md, Tethers). Buffers::tether_anchors and
+    /// tether_lengths are given with every call. Needs integrates.
     std::uint32_t tethers_per_vertex = 0;
 
     bool operator==(const Options&) const = default;  ///< field by field
