@@ -37,6 +37,10 @@ APSLK_INLINE lanes4 zero_unless(lanes_int condition, lanes4 v) {
     return v;
 }
 
+APSLK_INLINE lanes unless_pinned(lanes value, lanes inverse_mass) {
+    return select((lanes)(0.0f), value, inverse_mass > 0.0f);
+}
+
 // The excess over a ceiling that the next of `small_steps` sub-steps lets stand, from what this one lets stand and what
 // there is before it, and was at the start of the step. `asked_again`: a step (excess_asked_again).
 APSLK_INLINE lanes next_held_excess(lanes held, lanes excess, lanes start, int small_steps, float asked_again) {
@@ -45,9 +49,9 @@ APSLK_INLINE lanes next_held_excess(lanes held, lanes excess, lanes start, int s
     return fmax(exp(-APSLK_EXCESS_LEAD * part) * held, fmin(could_not, start));
 }
 
-// What a row is asked for of its demand `value`, where of its |∇C|² `size` this much is `left` beyond the area row: all
-// of it, or, of a weak row, less. Where next to nothing is left no motion brings the triangle below its ceiling and
-// keeps its area, and the one that is asked for goes far, to the side.
+// What a row is asked for of its demand `value`, where of its |∇C|² `size` this much is `left` beyond the area row, and
+// to corners that can move: all of it, or, of a weak row, less. Where next to nothing is left no motion brings the
+// triangle below its ceiling and keeps its area, and the one that is asked for goes far, to the side.
 APSLK_INLINE lanes asked_of_row(lanes value, lanes left, lanes size) {
     const lanes share = fmin(left / (APSLK_WEAK_ROW_SHARE * size), 1.0f);
     return fmin(value, share * share * value);
@@ -74,8 +78,11 @@ APSLK_INLINE apslk_stretch_row stretch_row(apslk_triangle_geometry t, apslk_rest
     const lanes4 g2 = combined(l2, stretch.spatial, -share, a2);
     const lanes left = 0.5f * (t.inverse_mass[0] * squared_length(g0) + t.inverse_mass[1] * squared_length(g1) +
                                t.inverse_mass[2] * squared_length(g2));
-    const lanes value =
-        asked_of_row(APSLK_EXCESS_TAKEN * (rest_area * (stretch.value - ceiling) - share * area_excess), left, size);
+    const lanes all = l0 * l0 + l1 * l1 + l2 * l2;
+    const lanes movable = unless_pinned(l0 * l0, t.inverse_mass[0]) + unless_pinned(l1 * l1, t.inverse_mass[1]) +
+                          unless_pinned(l2 * l2, t.inverse_mass[2]);
+    const lanes demand = APSLK_EXCESS_TAKEN * (rest_area * (stretch.value - ceiling) - share * area_excess);
+    const lanes value = asked_of_row(demand, movable * left, all * size);
     const lanes_int part =
         shape.ceiling > 0.0f && stretch.value > ceiling - APSLK_STRETCH_MARGIN && left > APSLK_LEAST_ROW_SHARE * size;
     apslk_stretch_row row;

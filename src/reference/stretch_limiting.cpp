@@ -128,7 +128,7 @@ ConstraintRow<Real> StretchLimiting<Real>::limited_row(std::size_t a, std::span<
     const Real left = weighted_product(limited, limited, w), size = weighted_product(row, row, w);
     if (!(left > Real(least_row_share) * size)) return no_row<Real>();
     share_[a] = share_of_other(row, area, w);
-    limited.value = asked_of_row(Real(excess_taken) * limited.value, left, size);
+    limited.value = asked_of_row(Real(excess_taken) * limited.value, movable_share(row, w) * left, size);
     return limited;
 }
 

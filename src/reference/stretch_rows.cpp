@@ -81,6 +81,17 @@ ConstraintRow<Real> stretch_row(const RestShape<Real>& shape, const Triangle& tr
 }
 
 template <class Real>
+Real movable_share(const ConstraintRow<Real>& row, const std::array<Real, 3>& inverse_masses) {
+    Real movable = Real(0), all = Real(0);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Real squared = row.gradients[k].squaredNorm();
+        all += squared;
+        if (inverse_masses[k] > Real(0)) movable += squared;
+    }
+    return all > Real(0) ? movable / all : Real(0);
+}
+
+template <class Real>
 Real weighted_product(const ConstraintRow<Real>& a, const ConstraintRow<Real>& b,
                       const std::array<Real, 3>& inverse_masses) {
     Real sum = 0;
@@ -169,6 +180,7 @@ TriangleVector<Real> row_bound(const RowSystem<Real>& system, std::span<const Re
     template RestShape<Real> rest_shape(std::span<const Real>, std::size_t);                                           \
     template Real weighted_product(const ConstraintRow<Real>&, const ConstraintRow<Real>&,                             \
                                    const std::array<Real, 3>&);                                                        \
+    template Real movable_share(const ConstraintRow<Real>&, const std::array<Real, 3>&);                               \
     template Real share_of_other(const ConstraintRow<Real>&, const ConstraintRow<Real>&, const std::array<Real, 3>&);  \
     template RestShape<Real> rest_shape(const Triangle&, std::span<const Real>);                                       \
     template PrincipalStretch<Real> principal_stretch(const RestShape<Real>&, const Triangle&, std::span<const Real>); \

@@ -80,9 +80,13 @@ template <class Real>
 ConstraintRow<Real> orthogonalized(const ConstraintRow<Real>& row, const ConstraintRow<Real>& other,
                                    const std::array<Real, 3>& inverse_masses);
 
+/// Of Σ |∇C_k|² the share of corners that can move.
+template <class Real>
+Real movable_share(const ConstraintRow<Real>& row, const std::array<Real, 3>& inverse_masses);
+
 /// What an orthogonalized row is asked for of the `value` that it demands, where of its |∇C|² `size` this much is
-/// `left`: all of it, or, of a weak row, less. Where next to nothing is left no motion brings the triangle below its
-/// ceiling and keeps its area, and the one that is asked for goes far, to the side.
+/// `left`, to corners that can move: all of it, or, of a weak row, less. Where next to nothing is left no motion brings
+/// the triangle below its ceiling and keeps its area, and the one that is asked for goes far, to the side.
 template <class Real>
 Real asked_of_row(Real value, Real left, Real size) {
     const Real share = std::min(left / (Real(APSLK_WEAK_ROW_SHARE) * size), Real(1));

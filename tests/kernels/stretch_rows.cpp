@@ -62,7 +62,7 @@ BothRows both_rows(const Cloth& cloth) {
             reference::stretch_row<double>(shape, triangle, cloth.positions, cloth.rest_areas[a], ceiling);
         limited = reference::orthogonalized(plain, area, w);
         both.share[a] = reference::share_of_other(plain, area, w);
-        const double left = reference::weighted_product(limited, limited, w),
+        const double left = reference::movable_share(plain, w) * reference::weighted_product(limited, limited, w),
                      size = reference::weighted_product(plain, plain, w);
         both.weak[a] = left < weak_row_share * size ? 1 : 0;
         limited.value = reference::asked_of_row(excess_taken * limited.value, left, size);

@@ -94,7 +94,7 @@ TEST_CASE("a stand-alone scene is whole steps under its gravity and damping") {
     CHECK(loose.strain_limiting->tethers == 1.25f);
     CHECK_THROWS_WITH(parse(R"({"mesh": {"grid": {}}, "integrator": {"stand_alone": {"tethers": -1}},
                                "strain_limiting": {}})"),
-                      "folder/scene.json: integrator.stand_alone.tethers: expected a number ≥ 0, got -1");
+                      "folder/scene.json: integrator.stand_alone.tethers: expected a number ≥ 0 and ≤ 1000000, got -1");
     const Scene filtered = parse(R"({"mesh": {"grid": {}}, "strain_limiting": {}})");
     CHECK(!filtered.strain_limiting->options.integrates);
     CHECK(filtered.strain_limiting->tethers == 0.0f);

@@ -303,3 +303,26 @@ TEST_CASE("tethers of a stand-alone cloth: what is held out of their reach is no
         CHECK(speed <= 1.5 * speed_without);
     }
 }
+
+TEST_CASE("pins of one triangle that part along its edge throw nothing about, with tethers and without") {
+    // The triangle's stretch is that of the pinned edge, which its third corner can do nothing for.
+    for (const char* stand_alone : {"{}", R"({"tethers": 0})"})
+        for (const double speed : {0.05, 0.2}) {
+            const Scene scene = parse_scene(
+                nlohmann::json::parse(
+                    R"({"mesh": {"grid": {"vertices": [25, 25]}}, "integrator": {"stand_alone": )" +
+                    std::string(stand_alone) +
+                    R"(}, "strain_limiting": {"stretch_ceiling": 1.1}, "pins": [{"vertices": [11]}, {"vertices": [12],
+                    "motion": {"stop": 0.5, "translate": {"velocity": [)" +
+                    std::to_string(speed) + ", 0, 0]}}}]}"),
+                "scene.json");
+            double area_change = 0.0, greatest_speed = 0.0;
+            for (const FrameReport& frame : run(scene, Backend::opencl, 60).frames) {
+                area_change = std::max(area_change, frame.max_area_change);
+                greatest_speed = std::max(greatest_speed, frame.max_speed);
+            }
+            CAPTURE(stand_alone, speed, area_change, greatest_speed);
+            CHECK(area_change < 0.3);
+            CHECK(greatest_speed < 20.0);
+        }
+}

@@ -194,6 +194,17 @@ TEST_CASE("orthogonalized row: a weak one is asked for less of what it demands, 
     CHECK(asked_of_row(-0.3, 0.02, 2.0) == -0.3);
 }
 
+TEST_CASE("orthogonalized row: what a pinned corner cannot give makes it weak", "[stretch_rows]") {
+    ConstraintRow<double> row{1.0, {Eigen::Vector3d(3, 0, 0), Eigen::Vector3d(0, -4, 0), Eigen::Vector3d(0, 0, 1)}};
+    CHECK(movable_share<double>(row, {1, 1, 1}) == 1.0);
+    CHECK(movable_share<double>(row, {2, 1e-6, 5}) == 1.0);  // however heavy
+    CHECK(movable_share<double>(row, {0, 1, 1}) == Approx(17.0 / 26));
+    CHECK(movable_share<double>(row, {0, 0, 1}) == Approx(1.0 / 26));
+    CHECK(movable_share<double>(row, {0, 0, 0}) == 0.0);
+    for (Eigen::Vector3d& gradient : row.gradients) gradient.setZero();
+    CHECK(movable_share<double>(row, {1, 1, 1}) == 0.0);
+}
+
 TEST_CASE("row system: ones on the diagonal, and no eigenvalue above the bound", "[stretch_rows]") {
     for (const test::SampleCloth& cloth : test::wavy_cloths()) {
         CAPTURE(cloth.name);
