@@ -195,11 +195,10 @@ class Tethers(unittest.TestCase):
         return made.step(CORNER, velocities, [0, 2, 2], [0], time_step=TIME_STEP, sub_steps=sub_steps,
                          tether_anchors=anchors, tether_lengths=lengths, **settings)
 
-    def test_what_is_out_of_reach_ends_at_its_length(self):
-        positions, velocities, stats = self.step([[0], [0.75], [0]])
-        np.testing.assert_allclose(positions, [[0, 0, 0], [0.75, 0, 0], [0, 1, 0]], atol=1e-6)
-        # A quarter of a metre in a 64th of a second.
-        np.testing.assert_allclose(velocities, [[0, 0, 0], [-16, 0, 0], [0, 0, 0]], atol=1e-4)
+    def test_what_is_out_of_reach_goes_no_further_and_is_not_pulled_back(self):
+        positions, after, stats = self.step([[0], [0.75], [0.75]], velocities=[[0, 0, 0], [16, 0, 0], [0, -8, 0]])
+        np.testing.assert_allclose(positions, [[0, 0, 0], [1, 0, 0], [0, 0.875, 0]], atol=1e-6)
+        np.testing.assert_allclose(after, [[0, 0, 0], [0, 0, 0], [0, -8, 0]], atol=1e-4)
         self.assertEqual(stats.status, "ok")
 
     def test_what_is_within_reach_goes_its_way(self):
@@ -213,16 +212,19 @@ class Tethers(unittest.TestCase):
         np.testing.assert_allclose(after, [[0, 0, 0], [8, 0, 0], [0, 8, 0]], atol=1e-4)
 
     def test_an_anchor_goes_on_with_the_velocity_of_its_pin(self):
-        # The pin ends at x = −1/2, and what is tethered to it 3/4 and 1 away from there, the latter from (1/2, 1).
+        # The pin ends at x = −1/2, and what is tethered to it 9/8 and 1 away from there, the latter from (1/2, 1).
         velocities = [[-32, 0, 0], [0, 0, 0], [0, 0, 0]]
-        positions, after, _ = self.step([[0], [0.75], [1]], velocities=velocities)
+        positions, after, _ = self.step([[0], [1.125], [1]], velocities=velocities)
         third = np.array([0.5, 1, 0]) / np.sqrt(1.25) - [0.5, 0, 0]
-        np.testing.assert_allclose(positions, [[-0.5, 0, 0], [0.25, 0, 0], third], atol=1e-6)
+        np.testing.assert_allclose(positions, [[-0.5, 0, 0], [0.625, 0, 0], third], atol=1e-6)
         np.testing.assert_allclose(after, (positions - CORNER) / TIME_STEP, atol=1e-4)
-        # In two parts: at half time the pin is at −1/4 and vertex 1 at 1/2. It goes on by as much, to 0, within 3/4.
-        positions, after, _ = self.step([[0], [0.75], [0]], velocities=velocities, sub_steps=3)
-        np.testing.assert_allclose(positions[:2], [[-0.5, 0, 0], [0, 0, 0]], atol=1e-6)
-        np.testing.assert_allclose(after[1], [-64, 0, 0], atol=1e-4)
+        # In two parts: at half time the pin is at −1/4 and vertex 1 at 7/8, with 16 m/s; then it goes as the pin does.
+        positions, after, _ = self.step([[0], [1.125], [0]], velocities=velocities, sub_steps=3)
+        np.testing.assert_allclose(positions[:2], [[-0.5, 0, 0], [0.625, 0, 0]], atol=1e-6)
+        np.testing.assert_allclose(after[1], [-32, 0, 0], atol=1e-4)
+        # Out of reach from the start it goes as the pin does from the start.
+        positions, after, _ = self.step([[0], [0.75], [0]], velocities=velocities)
+        np.testing.assert_allclose(positions[:2], [[-0.5, 0, 0], [0.5, 0, 0]], atol=1e-6)
 
     def test_what_falls_is_held_at_its_length(self):
         # Vertex 2 hangs below the pin at its length, vertex 1 has none: g Δt² a call of one part.
@@ -232,10 +234,11 @@ class Tethers(unittest.TestCase):
 
     def test_several_tethers_a_vertex_and_anchors_that_are_none(self):
         anchors = [[7, 7], [7, 0], [0, 4294967295]]
-        positions, _, _ = self.step([[1, 1], [0.5, 0.75], [0.5, 0.25]], anchors=anchors)
-        np.testing.assert_allclose(positions, [[0, 0, 0], [0.75, 0, 0], [0, 0.5, 0]], atol=1e-6)
+        positions, _, _ = self.step([[1, 1], [0.5, 1.125], [1.0625, 0.25]], anchors=anchors,
+                                    velocities=[[0, 0, 0], [16, 0, 0], [0, 16, 0]])
+        np.testing.assert_allclose(positions, [[0, 0, 0], [1.125, 0, 0], [0, 1.0625, 0]], atol=1e-6)
 
-    def test_a_curtain_hangs_no_lower_than_its_tethers(self):
+    def test_a_curtain_hangs_hardly_lower_than_its_tethers(self):
         cloth = Grid(10)
         rest = cloth.positions * [1, 1, 0]
         anchors, lengths = apsl.tethers_to_pins(rest, cloth.triangles, cloth.pins, 2)
@@ -250,7 +253,7 @@ class Tethers(unittest.TestCase):
             away = np.linalg.norm(positions[:, None] - positions[anchors], axis=2)
             ends.append((away / np.maximum(lengths, 1e-9))[lengths > 0].max())
         self.assertGreater(ends[0], 1.2)  # areas alone let it grow long
-        self.assertLess(ends[1], 1.02)
+        self.assertLess(ends[1], 1.1)
 
     def test_how_they_are_made(self):
         anchors, lengths = apsl.tethers_to_pins(CORNER, ONE_TRIANGLE, [0], 2, stretch=1.5)
