@@ -8,6 +8,8 @@
 #include "kernel_launch.hpp"
 #include "kernels/layout.h"
 
+#include <tuple>
+
 namespace apsl::host::arguments {
 
 /// `array` where each vertex has an acceleration of its own, for a kernel that has an argument for it only then.
@@ -16,9 +18,12 @@ const Array* where_accelerated(const Array& array, const Buffers& caller) {
     return caller.accelerations.buffer ? &array : nullptr;
 }
 
-/// `view` where vertices have tethers, likewise.
-inline const BufferView* where_tethered(const BufferView& view, const Buffers& caller) {
-    return caller.tether_anchors.buffer ? &view : nullptr;
+/// The last arguments of kernels that keep vertices within reach, which they have only where there are tethers
+/// (APSLK_TETHERS_ARGUMENT).
+inline auto tethers(const Buffers& caller) {
+    const auto where_tethered = [&](const BufferView& view) { return caller.tether_anchors.buffer ? &view : nullptr; };
+    return std::tuple(where_tethered(caller.tether_anchors), where_tethered(caller.tether_lengths),
+                      where_tethered(caller.positions), where_tethered(caller.velocities));
 }
 
 template <class Arrays>
@@ -97,8 +102,7 @@ template <class Arrays>
 const Kernel& start_small_steps(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.vertex_order, a.moved, a.motion,
                          a.total_correction, caller.velocities, where_accelerated(a.accelerations, caller),
-                         where_tethered(caller.tether_anchors, caller), where_tethered(caller.tether_lengths, caller),
-                         where_tethered(caller.positions, caller), where_tethered(caller.velocities, caller));
+                         tethers(caller));
 }
 
 template <class Arrays>
@@ -186,8 +190,7 @@ const Kernel& gather_displacements(const Kernel& kernel, const Arrays& a, const 
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.corner_offsets, a.corners,
                          a.gradients, pressure, a.moved, a.motion, a.total_correction, a.vertex_order,
                          or_any(caller.contacts, caller), sub_step, slot, where_accelerated(a.accelerations, caller),
-                         where_tethered(caller.tether_anchors, caller), where_tethered(caller.tether_lengths, caller),
-                         where_tethered(caller.positions, caller), where_tethered(caller.velocities, caller));
+                         tethers(caller));
 }
 
 /// `pressure`: of the last sub-step.

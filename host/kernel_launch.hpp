@@ -10,6 +10,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace apsl::host {
@@ -49,6 +50,11 @@ public:
     void add(const BufferView& view) {
         set(&view.buffer, sizeof view.buffer);
         set_number(cl_ulong{view.offset / sizeof(float)});
+    }
+    /// Several, in order.
+    template <class... Values>
+    void add(const std::tuple<Values...>& values) {
+        std::apply([this](const Values&... each) { (add(each), ...); }, values);
     }
     /// What only some builds of a kernel have an argument for: null in the others.
     template <class Value>
