@@ -72,20 +72,7 @@ TEST_CASE("acceleration of each vertex: the device agrees with the reference", "
 
 TEST_CASE("acceleration of each vertex: the same bytes twice, in every layout of positions", "[filter][acceleration]") {
     const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
-    const Parameters parameters = falling(4);
-    const Ended want = step_on_device(cloth, by_areas, parameters);
-    std::vector<Options> layouts = strided_and_apart(by_areas);
-    layouts.push_back(by_areas);
-    for (const Options& options : layouts) {
-        StrainLimiter limiter(device().context, device().id, cloth.topology, options);
-        const CallerBuffers buffers({&cloth, 1}, options, 5);
-        const std::vector<float> given = buffers.accelerations.read();
-        filter(limiter, buffers, {&parameters, 1});
-        const std::vector<float> velocities = buffers.read_velocities(), positions = buffers.read_positions();
-        CHECK(std::equal(positions.begin(), positions.end(), want.positions.begin()));
-        CHECK(std::equal(velocities.begin(), velocities.end(), want.velocities.begin()));
-        CHECK(same_bytes(given, buffers.accelerations.read()));
-    }
+    check_step_in_every_layout(cloth, by_areas, falling(4));
 }
 
 TEST_CASE("acceleration of each vertex: zeros leave what a call without them leaves", "[filter][acceleration]") {
@@ -103,19 +90,7 @@ TEST_CASE("acceleration of each vertex: two cloths in one limiter are each as in
           "[filter][acceleration]") {
     const std::vector<MovingCloth> cloths{moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::random), 1),
                                           moving_cloth(right_triangle(), 2)};
-    const Parameters parameters = falling(6);
-    StrainLimiter limiter(device().context, device().id, topologies_of(cloths), by_areas);
-    const CallerBuffers buffers(cloths, by_areas);
-    filter(limiter, buffers, {&parameters, 1});
-    const std::vector<float> positions = buffers.read_positions();
-    std::size_t first = 0;
-    for (const MovingCloth& cloth : cloths) {
-        const Ended alone = step_on_device(cloth, by_areas, parameters);
-        const std::vector<double> got(positions.begin() + static_cast<std::ptrdiff_t>(first),
-                                      positions.begin() + static_cast<std::ptrdiff_t>(first + alone.positions.size()));
-        CHECK(difference(got, alone.positions) <= elementwise_tolerance(20.0) * norm(alone.positions));
-        first += alone.positions.size();
-    }
+    check_step_as_alone(cloths, by_areas, falling(6));
 }
 
 TEST_CASE("acceleration of each vertex: what is not finite ends the call, but of a pin it is not looked at",

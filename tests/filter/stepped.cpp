@@ -5,7 +5,9 @@
 
 #include <apsl/reference.hpp>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <tuple>
 
 namespace apsl::test {
 
@@ -60,6 +62,44 @@ std::vector<Options> strided_and_apart(const Options& options) {
     apart.position_stride = apart.velocity_stride = 1;
     apart.position_component_stride = apart.velocity_component_stride = 64;
     return {strided, apart};
+}
+
+void check_step_in_every_layout(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {
+    const Ended want = step_on_device(cloth, options, parameters);
+    std::vector<Options> layouts = strided_and_apart(options);
+    layouts.push_back(options);
+    for (const Options& layout : layouts) {
+        StrainLimiter limiter(device().context, device().id, cloth.topology, layout);
+        const CallerBuffers buffers({&cloth, 1}, layout, 5);
+        const auto inputs = [&] {
+            return std::tuple(buffers.accelerations.read(), buffers.tether_lengths.read(),
+                              buffers.tether_anchors.read());
+        };
+        const auto [accelerations, lengths, anchors] = inputs();
+        filter(limiter, buffers, {&parameters, 1});
+        const std::vector<float> velocities = buffers.read_velocities(), positions = buffers.read_positions();
+        CHECK(std::equal(positions.begin(), positions.end(), want.positions.begin()));
+        CHECK(std::equal(velocities.begin(), velocities.end(), want.velocities.begin()));
+        const auto [accelerations_after, lengths_after, anchors_after] = inputs();
+        CHECK(same_bytes(accelerations, accelerations_after));
+        CHECK(same_bytes(lengths, lengths_after));
+        CHECK(same_bytes(anchors, anchors_after));
+    }
+}
+
+void check_step_as_alone(const std::vector<MovingCloth>& cloths, const Options& options, const Parameters& parameters) {
+    StrainLimiter limiter(device().context, device().id, topologies_of(cloths), options);
+    const CallerBuffers buffers(cloths, options);
+    filter(limiter, buffers, {&parameters, 1});
+    const std::vector<float> positions = buffers.read_positions();
+    std::size_t first = 0;
+    for (const MovingCloth& cloth : cloths) {
+        const Ended alone = step_on_device(cloth, options, parameters);
+        const std::vector<double> got(positions.begin() + static_cast<std::ptrdiff_t>(first),
+                                      positions.begin() + static_cast<std::ptrdiff_t>(first + alone.positions.size()));
+        CHECK(difference(got, alone.positions) <= elementwise_tolerance(20.0) * norm(alone.positions));
+        first += alone.positions.size();
+    }
 }
 
 BothEnds check_step_against_reference(const MovingCloth& cloth, const Options& options, const Parameters& parameters) {

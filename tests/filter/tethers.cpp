@@ -95,22 +95,7 @@ TEST_CASE("tethers: the device agrees with the reference", "[filter][tethers]") 
 
 TEST_CASE("tethers: the same bytes twice, in every layout of positions and velocities", "[filter][tethers]") {
     const MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 1);
-    const Parameters parameters = falling(4);
-    const Ended want = step_on_device(cloth, by_areas, parameters);
-    std::vector<Options> layouts = strided_and_apart(by_areas);
-    layouts.push_back(by_areas);
-    for (const Options& options : layouts) {
-        StrainLimiter limiter(device().context, device().id, cloth.topology, options);
-        const CallerBuffers buffers({&cloth, 1}, options, 5);
-        const std::vector<float> lengths = buffers.tether_lengths.read();
-        const std::vector<std::uint32_t> anchors = buffers.tether_anchors.read();
-        filter(limiter, buffers, {&parameters, 1});
-        const std::vector<float> velocities = buffers.read_velocities(), positions = buffers.read_positions();
-        CHECK(std::equal(positions.begin(), positions.end(), want.positions.begin()));
-        CHECK(std::equal(velocities.begin(), velocities.end(), want.velocities.begin()));
-        CHECK(same_bytes(lengths, buffers.tether_lengths.read()));
-        CHECK(same_bytes(anchors, buffers.tether_anchors.read()));
-    }
+    check_step_in_every_layout(cloth, by_areas, falling(4));
 }
 
 TEST_CASE("tethers: those of length 0, longer than is moved, or without an anchor change nothing",
@@ -136,19 +121,7 @@ TEST_CASE("tethers: those of length 0, longer than is moved, or without an ancho
 TEST_CASE("tethers: two cloths in one limiter are each as in a limiter of their own", "[filter][tethers]") {
     const std::vector<MovingCloth> cloths{moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::random), 1),
                                           moving_cloth(grid(4, 4, 1.0, 0.7, Diagonals::random), 2)};
-    const Parameters parameters = falling(6);
-    StrainLimiter limiter(device().context, device().id, topologies_of(cloths), by_areas);
-    const CallerBuffers buffers(cloths, by_areas);
-    filter(limiter, buffers, {&parameters, 1});
-    const std::vector<float> positions = buffers.read_positions();
-    std::size_t first = 0;
-    for (const MovingCloth& cloth : cloths) {
-        const Ended alone = step_on_device(cloth, by_areas, parameters);
-        const std::vector<double> got(positions.begin() + static_cast<std::ptrdiff_t>(first),
-                                      positions.begin() + static_cast<std::ptrdiff_t>(first + alone.positions.size()));
-        CHECK(difference(got, alone.positions) <= elementwise_tolerance(20.0) * norm(alone.positions));
-        first += alone.positions.size();
-    }
+    check_step_as_alone(cloths, by_areas, falling(6));
 }
 
 TEST_CASE("tethers: another cloth's vertices hold nothing", "[filter][tethers]") {
