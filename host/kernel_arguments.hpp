@@ -23,7 +23,8 @@ const Array* where_accelerated(const Array& array, const Buffers& caller) {
 inline auto tethers(const Buffers& caller) {
     const auto where_tethered = [&](const BufferView& view) { return caller.tether_anchors.buffer ? &view : nullptr; };
     return std::tuple(where_tethered(caller.tether_anchors), where_tethered(caller.tether_lengths),
-                      where_tethered(caller.positions), where_tethered(caller.velocities));
+                      where_tethered(caller.positions), where_tethered(caller.velocities),
+                      where_tethered(caller.inverse_masses));
 }
 
 template <class Arrays>

@@ -37,6 +37,8 @@
 #define APSLK_LEAST_ROW_SHARE 1e-6f
 // Of |∇C|² too: a row is weak below, and asked for less than it demands.
 #define APSLK_WEAK_ROW_SHARE 0.1f
+// An area row is weak where Σ |∇A|² of the corners that can move is below this share of A⁰ and one corner cannot.
+#define APSLK_WEAK_AREA_ROW_SHARE 0.2f
 // Sub-steps that follow the need (Parameters::most_sub_steps). The excess that a whole step may make for each of them,
 #define APSLK_EXCESS_A_SUB_STEP 0.23f
 // the ratio of the greatest effective mass to the one given that they aim at: K h²/m grows with it,
@@ -57,6 +59,9 @@
 #define APSLK_GROWTH_LET_PASS 1.5f
 // Added mass of a vertex, in stiffnesses of the tension around it.
 #define APSLK_MASS_ADDED_PER_STIFFNESS 4.0f
+// What such a vertex weighs at most, in masses as given: what pins leave no place would weigh ever more, and let go
+// with all of it.
+#define APSLK_GREATEST_MASS_RATIO 1000.0f
 // The bound is that of the very triangles and masses that are solved with: this is for rounding.
 #define APSLK_ROWS_BOUND_MARGIN 1.02f
 // Both rows' bound is that much larger than that of areas alone (APSLK_CHEBYSHEV_REACH), and their polynomial longer.

@@ -31,7 +31,8 @@ APSLK_INLINE float share_taken(float given, float effective, float stiffness, fl
 // With a stretch ceiling (docs/formulation.md, Stretch ceiling): 1/w' for the stiffness K, kg. `given` is w > 0.
 // Reference: apsl::reference, stretch_limiting.
 APSLK_INLINE float inverse_mass_under_tension(float given, float stiffness) {
-    return stiffness > 0.0f ? 1.0f / (1.0f / given + APSLK_MASS_ADDED_PER_STIFFNESS * stiffness) : given;
+    if (!(stiffness > 0.0f)) return given;
+    return fmax(1.0f / (1.0f / given + APSLK_MASS_ADDED_PER_STIFFNESS * stiffness), given / APSLK_GREATEST_MASS_RATIO);
 }
 
 // What a vertex keeps of its velocity. Mass beyond the ratio that sub-steps aim at resists a change of velocity and

@@ -49,12 +49,24 @@ APSLK_INLINE lanes next_held_excess(lanes held, lanes excess, lanes start, int s
     return fmax(exp(-APSLK_EXCESS_LEAD * part) * held, fmin(could_not, start));
 }
 
-// What a row is asked for of its demand `value`, where of its |∇C|² `size` this much is `left` beyond the area row, and
+// What a row is asked for of its demand `value`, where of its |∇C|² `size` this much is `left` beyond the area row, or
 // to corners that can move: all of it, or, of a weak row, less. Where next to nothing is left no motion brings the
 // triangle below its ceiling and keeps its area, and the one that is asked for goes far, to the side.
 APSLK_INLINE lanes asked_of_row(lanes value, lanes left, lanes size) {
     const lanes share = fmin(left / (APSLK_WEAK_ROW_SHARE * size), 1.0f);
     return fmin(value, share * share * value);
+}
+
+// Likewise an area row of its right-hand side `excess`, where one corner is pinned or more. Pins that come near to one
+// another leave the other corner a short edge: it would have to go far to mend the area.
+APSLK_INLINE lanes asked_of_area_row(apslk_triangle_geometry t, lanes rest_area, lanes excess) {
+    // |2 ∂A/∂x| is the length of the edge.
+    const lanes movable = 0.25f * (unless_pinned(squared_length(t.edge[0]), t.inverse_mass[0]) +
+                                   unless_pinned(squared_length(t.edge[1]), t.inverse_mass[1]) +
+                                   unless_pinned(squared_length(t.edge[2]), t.inverse_mass[2]));
+    const lanes share = fmin(movable / (APSLK_WEAK_AREA_ROW_SHARE * rest_area), 1.0f);
+    const lanes least = fmin(t.inverse_mass[0], fmin(t.inverse_mass[1], t.inverse_mass[2]));
+    return select(share * share * excess, excess, least > 0.0f);
 }
 
 // `stretch`: of the triangles now. What takes no part is zero. `area_excess`: the area row's right-hand side.
@@ -82,7 +94,7 @@ APSLK_INLINE apslk_stretch_row stretch_row(apslk_triangle_geometry t, apslk_rest
     const lanes movable = unless_pinned(l0 * l0, t.inverse_mass[0]) + unless_pinned(l1 * l1, t.inverse_mass[1]) +
                           unless_pinned(l2 * l2, t.inverse_mass[2]);
     const lanes demand = APSLK_EXCESS_TAKEN * (rest_area * (stretch.value - ceiling) - share * area_excess);
-    const lanes value = asked_of_row(demand, movable * left, all * size);
+    const lanes value = asked_of_row(demand, fmin(movable * size, all * left), all * size);
     const lanes_int part =
         shape.ceiling > 0.0f && stretch.value > ceiling - APSLK_STRETCH_MARGIN && left > APSLK_LEAST_ROW_SHARE * size;
     apslk_stretch_row row;

@@ -8,11 +8,12 @@
 #include "caller_vectors.h"
 #include "layout.h"
 
-// What the vertices of a cloth hang by: Buffers::tether_anchors, tether_lengths, positions and velocities.
+// What the vertices of a cloth hang by: Buffers::tether_anchors, tether_lengths, positions, velocities and
+// inverse_masses.
 typedef struct {
     __global const uint* anchors;
     __global const float* lengths;
-    __global const float *positions, *velocities;
+    __global const float *positions, *velocities, *inverse_masses;
 } apslk_tethers;
 
 // Arguments of kernels that keep vertices within reach, which they have only where there are tethers.
@@ -20,13 +21,15 @@ typedef struct {
 #define APSLK_TETHERS_ARGUMENT                                                                               \
     , __global const uint *tether_anchors, ulong tether_anchor_offset, __global const float *tether_lengths, \
         ulong tether_length_offset, __global const float *anchor_positions, ulong anchor_position_offset,    \
-        __global const float *anchor_velocities, ulong anchor_velocity_offset
-#define APSLK_TETHERS_GIVEN                                                        \
-    {tether_anchors + tether_anchor_offset, tether_lengths + tether_length_offset, \
-     anchor_positions + anchor_position_offset, anchor_velocities + anchor_velocity_offset}
+        __global const float *anchor_velocities, ulong anchor_velocity_offset,                               \
+        __global const float *anchor_inverse_masses, ulong anchor_inverse_mass_offset
+#define APSLK_TETHERS_GIVEN                                                                 \
+    {tether_anchors + tether_anchor_offset, tether_lengths + tether_length_offset,          \
+     anchor_positions + anchor_position_offset, anchor_velocities + anchor_velocity_offset, \
+     anchor_inverse_masses + anchor_inverse_mass_offset}
 #else
 #define APSLK_TETHERS_ARGUMENT
-#define APSLK_TETHERS_GIVEN {0, 0, 0, 0}
+#define APSLK_TETHERS_GIVEN {0, 0, 0, 0, 0}
 #endif
 
 // On to the next part of a step.
@@ -60,7 +63,8 @@ APSLK_INLINE float tether_stretch(const float3* at, const float* lengths) {
 #endif
 
 // Δt times the velocity of a vertex at x, without what would lead it out of reach of its anchors in this part: a tether
-// takes speed away from its anchor, moves nothing and pulls nothing back. An anchor outside of the cloth holds nothing.
+// takes speed away from its anchor, moves nothing and pulls nothing back. An anchor that is not pinned, or outside of
+// the cloth, holds nothing.
 APSLK_INLINE float3 within_reach(float3 x, float3 motion, apslk_move move, apslk_tethers tethers, apslk_cloth cloth,
                                  uint vertex) {
 #if APSLK_TETHERS
@@ -69,7 +73,8 @@ APSLK_INLINE float3 within_reach(float3 x, float3 motion, apslk_move move, apslk
     float lengths[APSLK_TETHERS];
     for (uint k = 0; k < APSLK_TETHERS; ++k) {
         const uint anchor = tethers.anchors[first + k];
-        const bool holds = anchor - cloth.vertex_begin < cloth.vertex_count;
+        const bool holds = anchor - cloth.vertex_begin < cloth.vertex_count &&
+                           tethers.inverse_masses[(ulong)anchor * APSLK_INVERSE_MASS_STRIDE] == 0.0f;
         lengths[k] = holds ? tethers.lengths[first + k] : 0.0f;
         at[k] = holds ? anchor_at(tethers, anchor, move.time) : (float3)(0.0f);
     }

@@ -195,6 +195,9 @@ APSLK_INLINE apslk_assembly_sums assemble_triangles(apslk_cloth cloth, bool acti
         lanes shift = (effective - 1.0f) / effective;
 #endif
         const lanes scale = jacobi_scale(damped, rest_area);
+#if APSLK_LIMITS_STRETCH
+        excess = asked_of_area_row(triangle, rest_area, excess);
+#endif
         const lanes area_excess = select((lanes)(0.0f), excess, scale > 0.0f);
         const lanes r = scale * area_excess;
 

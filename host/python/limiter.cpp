@@ -113,7 +113,8 @@ py::tuple Limiter::limit(py::handle positions, py::handle velocities, py::handle
             if (field.may_be_a_list && list) check_list(*list, field);
         }
     });
-    const Parameters parameters = with_arguments(Parameters{}, settings, "limit", parameter_fields);
+    const Parameters parameters =
+        with_arguments(Parameters{}, settings, limiter_->options().integrates ? "step" : "limit", parameter_fields);
     Array<float> limited({static_cast<py::ssize_t>(vertex_count_), py::ssize_t{3}});
     float* const result = limited.mutable_data();
     const bool integrates = limiter_->options().integrates;

@@ -165,8 +165,9 @@ typedef struct apsl_buffers {
     apsl_buffer_view accelerations; /**< m/s2, [V] laid out as positions are: beside the acceleration of all; only with
                                        acceleration_per_vertex */
     apsl_buffer_view tether_anchors; /**< uint32_t, tethers_per_vertex a vertex, [V]: pinned vertices of the same cloth,
-                                        as they lie in the buffers; only with tethers_per_vertex */
-    apsl_buffer_view tether_lengths; /**< m, likewise: how far a vertex may be from each; 0: no tether */
+                                        as they lie in the buffers; others hold nothing; only with tethers_per_vertex */
+    apsl_buffer_view tether_lengths; /**< m, likewise: how far a vertex may be from each; 0, or what is no positive
+                                        number: no tether */
 } apsl_buffers;
 
 /** apsl::Stats: what a call did to one cloth. */

@@ -61,9 +61,10 @@ struct Buffers {
     /// Parameters::acceleration. Of a force f, N, on vertex i: f wᵢ. Only with Options::acceleration_per_vertex.
     BufferView accelerations = {};
     /// 32-bit unsigned integers, Options::tethers_per_vertex a vertex, [V]: the pinned vertices that a vertex is
-    /// tethered to, as they lie in the buffers, of its own cloth; any other number holds nothing. See tethers_to_pins.
+    /// tethered to, as they lie in the buffers, of its own cloth. A vertex that is not pinned, and any other number,
+    /// holds nothing. See tethers_to_pins.
     BufferView tether_anchors = {};
-    /// m, likewise: how far from each it may be; 0: no tether.
+    /// m, likewise: how far from each it may be. 0, or what is no positive number: no tether.
     BufferView tether_lengths = {};
 };
 

@@ -109,6 +109,12 @@ StretchExcess StretchLimiting<Real>::measure(std::span<const Real> positions) co
     return sums;
 }
 
+template <class Real>
+std::array<Real, 3> StretchLimiting<Real>::corner_masses(std::size_t a) const {
+    const Triangle& triangle = topology_->triangles()[a];
+    return {inverse_masses_[triangle[0]], inverse_masses_[triangle[1]], inverse_masses_[triangle[2]]};
+}
+
 /// What triangle a's ceiling demands beyond its area row; zero where it takes no part.
 template <class Real>
 ConstraintRow<Real> StretchLimiting<Real>::limited_row(std::size_t a, std::span<const Real> positions,
@@ -122,13 +128,13 @@ ConstraintRow<Real> StretchLimiting<Real>::limited_row(std::size_t a, std::span<
     if (how.small_steps > 0)
         held_excess_[a] = next_held_excess(held_excess_[a], stretch_[a] - ceilings_[a], start_excess_[a], how);
     if (!(stretch_[a] > ceiling - Real(stretch_margin))) return no_row<Real>();
-    const std::array<Real, 3> w{inverse_masses_[triangle[0]], inverse_masses_[triangle[1]],
-                                inverse_masses_[triangle[2]]};
+    const std::array<Real, 3> w = corner_masses(a);
     ConstraintRow<Real> limited = orthogonalized(row, area, w);
     const Real left = weighted_product(limited, limited, w), size = weighted_product(row, row, w);
     if (!(left > Real(least_row_share) * size)) return no_row<Real>();
     share_[a] = share_of_other(row, area, w);
-    limited.value = asked_of_row(Real(excess_taken) * limited.value, movable_share(row, w) * left, size);
+    limited.value =
+        asked_of_row(Real(excess_taken) * limited.value, std::min(movable_share(row, w) * size, left), size);
     return limited;
 }
 
@@ -139,6 +145,7 @@ void StretchLimiting<Real>::solve(std::span<const Real> positions, std::span<con
     for (std::size_t a = 0; a < count; ++a) {
         rows_[a] = area_row(geometry[a], Real(0));
         rows_[a].value = area_excess[static_cast<Eigen::Index>(a)];
+        rows_[a].value = asked_of_area_row(rows_[a], rest_areas_[a], corner_masses(a));
         rows_[count + a] = limited_row(a, positions, rows_[a], how);
     }
     system_ = row_system<Real>(*topology_, rows_, owners_, inverse_masses_);
@@ -180,13 +187,20 @@ void StretchLimiting<Real>::find_tension(std::span<const TriangleGeometry<Real>>
     }
 }
 
+/// w', 1/kg, for the stiffness K; `given` is w > 0.
+template <class Real>
+Real inverse_mass_under_tension(Real given, Real stiffness) {
+    if (!(stiffness > Real(0))) return given;
+    return std::max(Real(1) / (Real(1) / given + Real(mass_added_per_stiffness) * stiffness),
+                    given / Real(APSLK_GREATEST_MASS_RATIO));
+}
+
 /// 1/kg, of the displacement: of the masses that were solved with and those that its own tension asks for the greater.
 template <class Real>
 Real StretchLimiting<Real>::taken_inverse_mass(std::size_t vertex) const {
     const Real given = given_inverse_masses_[vertex];
     if (!(given > Real(0))) return Real(0);
-    return std::min(inverse_masses_[vertex],
-                    Real(1) / (Real(1) / given + Real(mass_added_per_stiffness) * tension_[vertex]));
+    return std::min(inverse_masses_[vertex], inverse_mass_under_tension(given, tension_[vertex]));
 }
 
 template <class Real>
@@ -213,9 +227,7 @@ void StretchLimiting<Real>::raise_masses() {
         const Real given = given_inverse_masses_[i];
         if (!(given > Real(0))) continue;
         stiffness_[i] = std::max(tension_[i], static_cast<Real>(stiffness_kept) * stiffness_[i]);
-        inverse_masses_[i] = stiffness_[i] > Real(0)
-                                 ? Real(1) / (Real(1) / given + Real(mass_added_per_stiffness) * stiffness_[i])
-                                 : given;
+        inverse_masses_[i] = inverse_mass_under_tension(given, stiffness_[i]);
     }
 }
 

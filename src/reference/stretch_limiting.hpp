@@ -66,6 +66,8 @@ public:
 private:
     Real stretch(std::size_t a, std::span<const Real> positions) const;  ///< s₁
     Real excess(std::size_t a, Real stretch) const;                      ///< of a triangle with a ceiling
+    /// w' of its corners.
+    std::array<Real, 3> corner_masses(std::size_t a) const;
     ConstraintRow<Real> limited_row(std::size_t a, std::span<const Real> positions, const ConstraintRow<Real>& area,
                                     const StretchSolve& how);
     void find_tension(std::span<const TriangleGeometry<Real>> geometry);

@@ -80,15 +80,32 @@ ConstraintRow<Real> stretch_row(const RestShape<Real>& shape, const Triangle& tr
     return row;
 }
 
+namespace {
+
+/// Σ |∇C_k|² of corners that can move.
+template <class Real>
+Real movable_squares(const ConstraintRow<Real>& row, const std::array<Real, 3>& inverse_masses) {
+    Real sum = Real(0);
+    for (std::size_t k = 0; k < 3; ++k)
+        if (inverse_masses[k] > Real(0)) sum += row.gradients[k].squaredNorm();
+    return sum;
+}
+
+}  // namespace
+
 template <class Real>
 Real movable_share(const ConstraintRow<Real>& row, const std::array<Real, 3>& inverse_masses) {
-    Real movable = Real(0), all = Real(0);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Real squared = row.gradients[k].squaredNorm();
-        all += squared;
-        if (inverse_masses[k] > Real(0)) movable += squared;
-    }
-    return all > Real(0) ? movable / all : Real(0);
+    const Real all = movable_squares<Real>(row, {Real(1), Real(1), Real(1)});
+    return all > Real(0) ? movable_squares(row, inverse_masses) / all : Real(0);
+}
+
+template <class Real>
+Real asked_of_area_row(const ConstraintRow<Real>& row, Real rest_area, const std::array<Real, 3>& inverse_masses) {
+    const bool all_move = std::all_of(inverse_masses.begin(), inverse_masses.end(), [](Real w) { return w > Real(0); });
+    if (all_move || !(rest_area > Real(0))) return row.value;
+    const Real share =
+        std::min(movable_squares(row, inverse_masses) / (Real(APSLK_WEAK_AREA_ROW_SHARE) * rest_area), Real(1));
+    return share * share * row.value;
 }
 
 template <class Real>
@@ -181,6 +198,7 @@ TriangleVector<Real> row_bound(const RowSystem<Real>& system, std::span<const Re
     template Real weighted_product(const ConstraintRow<Real>&, const ConstraintRow<Real>&,                             \
                                    const std::array<Real, 3>&);                                                        \
     template Real movable_share(const ConstraintRow<Real>&, const std::array<Real, 3>&);                               \
+    template Real asked_of_area_row(const ConstraintRow<Real>&, Real, const std::array<Real, 3>&);                     \
     template Real share_of_other(const ConstraintRow<Real>&, const ConstraintRow<Real>&, const std::array<Real, 3>&);  \
     template RestShape<Real> rest_shape(const Triangle&, std::span<const Real>);                                       \
     template PrincipalStretch<Real> principal_stretch(const RestShape<Real>&, const Triangle&, std::span<const Real>); \

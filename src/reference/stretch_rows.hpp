@@ -85,13 +85,18 @@ template <class Real>
 Real movable_share(const ConstraintRow<Real>& row, const std::array<Real, 3>& inverse_masses);
 
 /// What an orthogonalized row is asked for of the `value` that it demands, where of its |∇C|² `size` this much is
-/// `left`, to corners that can move: all of it, or, of a weak row, less. Where next to nothing is left no motion brings
-/// the triangle below its ceiling and keeps its area, and the one that is asked for goes far, to the side.
+/// `left`, or to corners that can move: all of it, or, of a weak row, less. Where next to nothing is left no motion
+/// brings the triangle below its ceiling and keeps its area, and the one that is asked for goes far, to the side.
 template <class Real>
 Real asked_of_row(Real value, Real left, Real size) {
     const Real share = std::min(left / (Real(APSLK_WEAK_ROW_SHARE) * size), Real(1));
     return std::min(value, share * share * value);
 }
+
+/// Likewise an area row of its `value`, where one corner is pinned or more. Pins that come near to one another leave
+/// the other corner a short edge: it would have to go far to mend the area.
+template <class Real>
+Real asked_of_area_row(const ConstraintRow<Real>& row, Real rest_area, const std::array<Real, 3>& inverse_masses);
 
 /// Conditions J Δx = −b on the coordinates of all vertices. A row is divided by √D, D = Σ_k w_k |∇C_k|², so that
 /// J W Jᵀ has ones on its diagonal; a row with D = 0 is zero. With J W Jᵀ y = b the displacement is Δx = −W Jᵀ y and

@@ -31,10 +31,9 @@ struct Hold {
     Real reach;
 };
 
-/// What holds `vertex`. Anchors go straight on with the
-/// velocities that they have at the start of the step, as pinned vertices do. Where they are further apart than two
-/// tethers together reach, nothing could be within reach of both: then all tethers of the vertex are longer in the same
-/// ratio.
+/// What holds `vertex`: anchors that are pinned. They go straight on with the velocities that they have at the start of
+/// the step. Where they are further apart than two tethers together reach, nothing could be within reach of both: then
+/// all tethers of the vertex are longer in the same ratio.
 template <class Real>
 std::vector<Hold<Real>> holds(const Move<Real>& move, const Buffers<Real>& buffers, std::size_t per_vertex,
                               std::size_t vertex) {
@@ -42,6 +41,7 @@ std::vector<Hold<Real>> holds(const Move<Real>& move, const Buffers<Real>& buffe
     for (std::size_t t = per_vertex * vertex; t < per_vertex * (vertex + 1); ++t) {
         const std::size_t anchor = buffers.tether_anchors[t];
         if (!(buffers.tether_lengths[t] > Real(0)) || 3 * anchor >= buffers.positions.size()) continue;
+        if (buffers.inverse_masses[anchor] != Real(0)) continue;
         const Vector3<Real> velocity = position(std::span<const Real>(buffers.velocities), anchor);
         found.push_back({position(buffers.positions, anchor) + move.time * velocity, move.time_step * velocity,
                          buffers.tether_lengths[t]});

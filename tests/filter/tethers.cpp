@@ -118,6 +118,22 @@ TEST_CASE("tethers: those of length 0, longer than is moved, or without an ancho
     }
 }
 
+TEST_CASE("tethers: an anchor that is not pinned holds nothing", "[filter][tethers]") {
+    for (MovingCloth cloth : small_cloths()) {
+        for (const std::uint32_t anchor : cloth.tether_anchors)
+            if (anchor < cloth.inverse_masses.size()) cloth.inverse_masses[anchor] = 5.0;
+        MovingCloth none = cloth;
+        std::fill(none.tether_lengths.begin(), none.tether_lengths.end(), 0.0);
+        CAPTURE(cloth.rest_areas.size());
+        const Ended got = step_on_device(cloth, by_areas, falling(6)),
+                    want = step_on_device(none, by_areas, falling(6));
+        CHECK(got.positions == want.positions);
+        CHECK(got.velocities == want.velocities);
+        const Ended reference = step_with_reference(cloth, by_areas, falling(6));
+        CHECK(reference.positions == step_with_reference(none, by_areas, falling(6)).positions);
+    }
+}
+
 TEST_CASE("tethers: two cloths in one limiter are each as in a limiter of their own", "[filter][tethers]") {
     const std::vector<MovingCloth> cloths{moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::random), 1),
                                           moving_cloth(grid(4, 4, 1.0, 0.7, Diagonals::random), 2)};

@@ -326,3 +326,38 @@ TEST_CASE("pins of one triangle that part along its edge throw nothing about, wi
             CHECK(greatest_speed < 20.0);
         }
 }
+
+TEST_CASE("pins that come near to one another, or draw a triangle apart, do not throw the cloth about") {
+    struct Pins {
+        const char* document;
+        double greatest_speed, greatest_energy;  // m/s, J
+    };
+    const auto moved = [](int vertex, const char* velocity, const char* stop) {
+        return R"({"vertices": [)" + std::to_string(vertex) + R"(], "motion": {"start": 0.1, "stop": )" + stop +
+               R"(, "translate": {"velocity": )" + velocity + "}}}";
+    };
+    // Two close from 62.5 to 2.5 mm. All three corners of a triangle part, by 40 mm each: there masses would grow by
+    // 10⁶, and let go with 75 kJ.
+    const std::string near = moved(144, "[0.2, 0, 0]", "0.25") + ", " + moved(145, "[-0.2, 0, 0]", "0.25"),
+                      apart = moved(144, "[-0.2, 0, 0]", "0.3") + ", " + moved(145, "[0.2, 0, 0]", "0.3") + ", " +
+                              moved(161, "[0, 0, 0.2]", "0.3");
+    for (const auto& [document, greatest_speed, greatest_energy] :
+         {Pins{near.c_str(), 50.0, 2.0}, Pins{apart.c_str(), 1000.0, 1000.0}})
+        for (const char* stand_alone : {"{}", R"({"tethers": 0})"}) {
+            const Scene scene = parse_scene(
+                nlohmann::json::parse(
+                    R"({"mesh": {"grid": {"vertices": [17, 17], "plane": "horizontal", "diagonals": "alternating"}},
+                        "density": 0.2, "start": {"random": 0.001}, "strain_limiting": {"stretch_ceiling": 1.1},
+                        "integrator": {"stand_alone": )" +
+                    std::string(stand_alone) + R"(}, "pins": [)" + document + "]}"),
+                "scene.json");
+            double speed = 0.0, energy = 0.0;
+            for (const FrameReport& frame : run(scene, Backend::opencl, 40).frames) {
+                speed = std::max(speed, frame.max_speed);
+                energy = std::max(energy, frame.energy.kinetic);
+            }
+            CAPTURE(document, stand_alone, speed, energy);
+            CHECK(speed < greatest_speed);
+            CHECK(energy < greatest_energy);
+        }
+}
