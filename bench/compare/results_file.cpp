@@ -157,8 +157,9 @@ ResultsFile::ResultsFile(std::filesystem::path file, const std::optional<scenes:
     Json stored = read_results(file_);
     const Json earlier = stored["machine"];
     const Json other = earlier.value("opencl_device", Json());
-    if (earlier.value("processor", "") != machine["processor"] || earlier.value("cores", 0u) != machine["cores"] ||
-        stored["build_type"] != APSL_BUILD_TYPE ||
+    // Both sides Json: a string on the left has no comparison with one in C++20 (GCC 13 and later).
+    if (earlier.value("processor", Json()) != machine["processor"] ||
+        earlier.value("cores", Json()) != machine["cores"] || stored["build_type"] != APSL_BUILD_TYPE ||
         (device && !other.is_null() && !same(other, machine["opencl_device"]))) {
         throw InputError(file_.string() + ": holds results of another machine, build or device; choose another --out");
     }
