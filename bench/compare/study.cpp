@@ -48,12 +48,14 @@ SceneCase parse_case(const SceneValue& value, const std::filesystem::path& folde
 
 MethodRuns parse_method(const SceneValue& value) {
     if (value.json->is_string()) {
-        const ComparedMethod& method = find_method(value.text());
+        const std::string name = value.text();  // named: the reference to a method is not one to its name
+        const ComparedMethod& method = find_method(name);
         return {.method = &method, .parameters = standard_sweep(method)};
     }
     SceneObject object(value);
     if (!object.has("name")) value.fail("name is missing, expected a method's");
-    const ComparedMethod& method = find_method(object.find("name").text());
+    const std::string name = object.find("name").text();
+    const ComparedMethod& method = find_method(name);
     MethodRuns runs{.method = &method, .parameters = {}};
     const SceneValue parameters = object.find("parameters");
     object.refuse_other_keys();
