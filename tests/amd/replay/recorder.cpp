@@ -123,6 +123,15 @@ void claim(void* place, Value value) {
     std::memcpy(place, &value, sizeof value);
 }
 
+// pocl 6 with LLVM 18 ends the process over rest_hinges where it is not optimised (pocl issue 1608).
+bool aborts_unoptimised(cl_device_id device) {
+    cl_platform_id platform = nullptr;
+    char version[1024] = {};
+    return clGetDeviceInfo(device, CL_DEVICE_PLATFORM, sizeof platform, &platform, nullptr) == CL_SUCCESS &&
+           clGetPlatformInfo(platform, CL_PLATFORM_VERSION, sizeof version, version, nullptr) == CL_SUCCESS &&
+           std::strstr(version, "PoCL 6.") && std::strstr(version, "LLVM 18.");
+}
+
 }  // namespace
 
 #define APSL_RECORDED extern "C" __attribute__((visibility("default")))
@@ -175,8 +184,9 @@ APSL_RECORDED cl_int clBuildProgram(cl_program program, cl_uint count, const cl_
         to.index << "program " << to.programs[program] << ' ' << (options ? options : "") << '\n';
     }
     // Half of pocl's compile time, and most of the recording's, is optimisation.
-    const std::string unoptimised = std::string(options ? options : "") + " -cl-opt-disable";
-    return real(program, count, devices, unoptimised.c_str(), done, given);
+    std::string built_with = options ? options : "";
+    if (count == 0 || !aborts_unoptimised(devices[0])) built_with += " -cl-opt-disable";
+    return real(program, count, devices, built_with.c_str(), done, given);
 }
 
 APSL_RECORDED cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* status) {
