@@ -44,7 +44,7 @@ APSLK_INLINE float judged_max(apslk_area_change change) {
 
 APSLK_INLINE float judged_rms(apslk_area_change change) {
 #if APSLK_LIMITS_STRETCH
-    change.rms = hypot(change.rms, change.rms_excess);
+    change.rms = length((float2)(change.rms, change.rms_excess));
 #endif
     return change.rms;
 }

@@ -63,7 +63,9 @@ APSLK_KERNEL void bend_hinges(__global const apslk_parameters* parameters, __glo
         const float root = sqrt(asked * unit > reach ? reach / unit : asked);
         gradients[r].at_first = (float4)(root * hinge.gradients.at_first.xyz, hinge.gradients.at_first.w);
         gradients[r].at_second = (float4)(root * hinge.gradients.at_second.xyz, hinge.gradients.at_second.w);
-        moments[r] = root * remainder(hinge.angle - rest.x, 2.0f * M_PI_F);
+        // Not remainder(), nor hypot() elsewhere: AMD's newer device libraries compute them in double precision.
+        const float turn = 2.0f * M_PI_F, bent = hinge.angle - rest.x;
+        moments[r] = root * (bent - turn * rint(bent / turn));
     }
 }
 

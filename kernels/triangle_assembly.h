@@ -76,7 +76,7 @@ APSLK_INLINE void order_rest_shapes(apslk_cloth cloth, bool active, float ceilin
         (void)stretch_ceilings;
 #endif
         if (!all(isfinite(m)) || !isfinite(ceiling)) ordered_rest[a] = NAN;  // one witness for all
-        const float m11 = hypot(m.z, m.w), determinant = m.x * m.w - m.y * m.z;
+        const float m11 = length(m.zw), determinant = m.x * m.w - m.y * m.z;
         const bool has_shape = ordered_rest[a] > 0.0f && determinant != 0.0f;
         ordered_rest[APSLK_REST_SHAPE_00 * cloth.run + a] = has_shape ? determinant / m11 : 0.0f;
         ordered_rest[APSLK_REST_SHAPE_01 * cloth.run + a] = has_shape ? (m.x * m.z + m.y * m.w) / m11 : 0.0f;
