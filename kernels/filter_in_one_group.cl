@@ -32,7 +32,7 @@ APSLK_KERNEL void filter_in_one_group(
     const uint c = (uint)get_group_id(1);
     __global apslk_stats* stats = all_stats + c;
     const apslk_touched nothing_touched = {0, vertex_order, 0.0f};
-    const apslk_tethers no_tethers = {0, 0, 0, 0};
+    const apslk_tethers no_tethers = APSLK_NO_TETHERS;
     int sub_steps = 0;
     bool started = false;
 

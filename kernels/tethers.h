@@ -16,6 +16,8 @@ typedef struct {
     __global const float *positions, *velocities, *inverse_masses;
 } apslk_tethers;
 
+#define APSLK_NO_TETHERS {0, 0, 0, 0, 0}
+
 // Arguments of kernels that keep vertices within reach, which they have only where there are tethers.
 #if APSLK_TETHERS
 #define APSLK_TETHERS_ARGUMENT                                                                               \
@@ -29,7 +31,7 @@ typedef struct {
      anchor_inverse_masses + anchor_inverse_mass_offset}
 #else
 #define APSLK_TETHERS_ARGUMENT
-#define APSLK_TETHERS_GIVEN {0, 0, 0, 0, 0}
+#define APSLK_TETHERS_GIVEN APSLK_NO_TETHERS
 #endif
 
 // On to the next part of a step.

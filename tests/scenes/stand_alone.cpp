@@ -158,17 +158,20 @@ TEST_CASE("stand-alone: far from the origin the device does bit for bit what it 
 
 TEST_CASE("stand-alone: the report tells the parts of a frame's time apart") {
     for (const Backend backend : {Backend::opencl, Backend::reference}) {
-        for (const FrameReport& frame : run(parse(led), backend, 3).frames) {
+        double least_unaccounted = 1.0;  // s; the process may be held up between any two parts
+        for (const FrameReport& frame : run(parse(led), backend, 6).frames) {
             CHECK(frame.sub_steps >= 40);
             CHECK(frame.integrator_seconds == 0.0);
             CHECK(frame.collision_seconds == 0.0);
             CHECK(frame.filter_seconds > 0.0);
             CHECK(frame.pin_seconds > 0.0);
             CHECK(frame.step_seconds >= frame.pin_seconds + frame.filter_seconds);
-            CHECK(frame.step_seconds < 1.01 * (frame.pin_seconds + frame.filter_seconds) + 1e-3);
+            least_unaccounted =
+                std::min(least_unaccounted, frame.step_seconds - frame.pin_seconds - frame.filter_seconds);
             CHECK((frame.read_back_seconds > 0.0) == (backend == Backend::opencl));
             CHECK(frame.measuring_seconds > 0.0);
         }
+        CHECK(least_unaccounted < 1e-3);
     }
 }
 
