@@ -38,7 +38,7 @@
 // Of |∇C|² too: a row is weak below, and asked for less than it demands.
 #define APSLK_WEAK_ROW_SHARE 0.1f
 // An area row is weak where Σ |∇A|² of the corners that can move is below this share of A⁰ and one corner cannot.
-#define APSLK_WEAK_AREA_ROW_SHARE 0.2f
+#define APSLK_WEAK_AREA_ROW_SHARE 0.1f
 // Sub-steps that follow the need (Parameters::most_sub_steps). The excess that a whole step may make for each of them,
 #define APSLK_EXCESS_A_SUB_STEP 0.23f
 // the ratio of the greatest effective mass to the one given that they aim at: K h²/m grows with it,

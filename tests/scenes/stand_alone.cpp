@@ -345,7 +345,7 @@ TEST_CASE("pins that come near to one another, or draw a triangle apart, do not 
                       apart = moved(144, "[-0.2, 0, 0]", "0.3") + ", " + moved(145, "[0.2, 0, 0]", "0.3") + ", " +
                               moved(161, "[0, 0, 0.2]", "0.3");
     for (const auto& [document, greatest_speed, greatest_energy] :
-         {Pins{near.c_str(), 50.0, 2.0}, Pins{apart.c_str(), 1000.0, 1000.0}})
+         {Pins{near.c_str(), 50.0, 20.0}, Pins{apart.c_str(), 1000.0, 1000.0}})
         for (const char* stand_alone : {"{}", R"({"tethers": 0})"}) {
             const Scene scene = parse_scene(
                 nlohmann::json::parse(

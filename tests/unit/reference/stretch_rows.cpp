@@ -206,19 +206,18 @@ TEST_CASE("orthogonalized row: what a pinned corner cannot give makes it weak", 
 }
 
 TEST_CASE("area row: pins near to one another make it weak, in both directions", "[stretch_rows]") {
-    // Legs of 0.2 and 0.4: |2 ∂A/∂x| are the edges, A⁰ = 0.04.
     ConstraintRow<double> row{0.7,
                               {Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(0, 0.2, 0), Eigen::Vector3d(0.1, -0.2, 0)}};
-    CHECK(asked_of_area_row<double>(row, 0.04, {1, 1, 1}) == 0.7);
-    CHECK(asked_of_area_row<double>(row, 0.04, {1, 0, 0}) == 0.7);                // Σ = 0.01 > 0.2 · 0.04
-    CHECK(asked_of_area_row<double>(row, 0.1, {1, 0, 0}) == Approx(0.7 * 0.25));  // 0.01 of 0.02
-    CHECK(asked_of_area_row<double>(row, 0.5, {1, 0, 0}) == Approx(0.7 * 0.01));  // 0.01 of 0.1
-    CHECK(asked_of_area_row<double>(row, 0.5, {1, 5, 0}) == Approx(0.7 * 0.25));  // 0.05 of 0.1
-    CHECK(asked_of_area_row<double>(row, 0.5, {1e-6, 5, 1}) == 0.7);              // however heavy
-    CHECK(asked_of_area_row<double>(row, 0.5, {0, 0, 0}) == 0.0);
+    CHECK(asked_of_area_row<double>(row, 0.08, {1, 1, 1}) == 0.7);
+    CHECK(asked_of_area_row<double>(row, 0.08, {1, 0, 0}) == 0.7);                // Σ = 0.01 > 0.1 · 0.08
+    CHECK(asked_of_area_row<double>(row, 0.2, {1, 0, 0}) == Approx(0.7 * 0.25));  // 0.01 of 0.02
+    CHECK(asked_of_area_row<double>(row, 1.0, {1, 0, 0}) == Approx(0.7 * 0.01));  // 0.01 of 0.1
+    CHECK(asked_of_area_row<double>(row, 1.0, {1, 5, 0}) == Approx(0.7 * 0.25));  // 0.05 of 0.1
+    CHECK(asked_of_area_row<double>(row, 1.0, {1e-6, 5, 1}) == 0.7);              // however heavy
+    CHECK(asked_of_area_row<double>(row, 1.0, {0, 0, 0}) == 0.0);
     CHECK(asked_of_area_row<double>(row, 0.0, {1, 0, 0}) == 0.7);
     row.value = -0.7;
-    CHECK(asked_of_area_row<double>(row, 0.5, {1, 0, 0}) == Approx(-0.7 * 0.01));
+    CHECK(asked_of_area_row<double>(row, 1.0, {1, 0, 0}) == Approx(-0.7 * 0.01));
 }
 
 TEST_CASE("row system: ones on the diagonal, and no eigenvalue above the bound", "[stretch_rows]") {
