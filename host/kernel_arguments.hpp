@@ -54,7 +54,7 @@ const Kernel& rest_hinges(const Kernel& kernel, const Arrays& a, const BufferVie
 /// `part`: of the small steps.
 template <class Arrays>
 const Kernel& bend_hinges(const Kernel& kernel, const Arrays& a, const Buffers& caller, cl_int part) {
-    return set_arguments(kernel, a.parameters, a.states, a.hinge_offsets, a.hinge_order, a.hinges,
+    return set_arguments(kernel, a.parameters, a.states, a.partials, a.hinge_offsets, a.hinge_order, a.hinges,
                          a.hinge_corner_offsets, a.moved, a.motion, a.hinge_gradients, a.hinge_moments,
                          caller.rest_hinges, part, where_accelerated(a.accelerations, caller));
 }
@@ -199,6 +199,13 @@ template <class Arrays, class Array>
 const Kernel& measure_area_change(const Kernel& kernel, const Arrays& a, const Array& pressure) {
     return set_arguments(kernel, a.cloths, a.parameters, a.partials, a.triangles, a.moved, a.motion, a.ordered_rest,
                          pressure);
+}
+
+template <class Arrays>
+const Kernel& measure_energy(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.vertex_order, a.motion,
+                         caller.velocities, or_any(caller.contacts, caller),
+                         where_accelerated(a.accelerations, caller));
 }
 
 template <class Arrays>

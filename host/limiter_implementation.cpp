@@ -230,6 +230,7 @@ void StrainLimiter::Implementation::queue_many_groups(CommandSequence& commands,
         if (sub_step + 2 < budget.sub_steps) queue_bending(commands, buffers, budget, sub_step + 1);
     }
     launch(commands, arguments::measure_area_change(kernels.measure_area_change, arrays, arrays.pressures.front()));
+    if (options.integrates) launch(commands, arguments::measure_energy(kernels.measure_energy, arrays, buffers));
     launch_one_group(commands, arguments::end_call(kernels.end_call, arrays));
     if (options.integrates)
         launch(commands, arguments::store_step(kernels.store_step, arrays, buffers));

@@ -31,10 +31,12 @@ LimiterKernels create_kernels(cl_program program, const Options& options) {
     create(kernels.gather_displacements, "gather_displacements");
     create(kernels.measure_area_change, "measure_area_change");
     create(kernels.end_call, "end_call");
-    if (options.integrates)
+    if (options.integrates) {
+        create(kernels.measure_energy, "measure_energy");
         create(kernels.store_step, "store_step");
-    else
+    } else {
         create(kernels.update_velocities, "update_velocities");
+    }
     if (options.solver == Solver::chebyshev) {
         create(kernels.bound_vertices, "bound_vertices");
         create(kernels.chebyshev_step, "chebyshev_step");

@@ -13,7 +13,7 @@ struct LimiterKernels {
     Kernel filter_in_one_group;
     Kernel predict_positions, order_triangle_values, measure_step, judge_whole_step, start_small_steps,
         assemble_gradients, begin_solve, gather_displacements, measure_area_change, end_call, update_velocities,
-        store_step;
+        measure_energy, store_step;
     Kernel assemble_pressure_csr, csr_spmv_dot;
     Kernel matrix_free_apply_dot;  ///< of the consistent or of the printed matrix
     Kernel cg_update, finish_solve, measure_guess, start_from_guess;

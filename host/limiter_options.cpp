@@ -106,7 +106,10 @@ std::vector<std::string_view> kernel_files(const Options& options) {
     std::vector<std::string_view> files{"set_parameters.cl",       "predict_positions.cl",   "order_triangle_values.cl",
                                         "assemble_gradients.cl",   "measure_area_change.cl", "solve_control.cl",
                                         "gather_displacements.cl", "rest_areas.cl"};
-    files.push_back(options.integrates ? "store_step.cl" : "update_velocities.cl");
+    if (options.integrates)
+        files.insert(files.end(), {"measure_energy.cl", "store_step.cl"});
+    else
+        files.push_back("update_velocities.cl");
     if (options.bends) files.insert(files.end(), {"rest_hinges.cl", "bend_hinges.cl"});
     if (!options.positions_only) files.push_back("start_small_steps.cl");
     if (options.solver == Solver::chebyshev) {

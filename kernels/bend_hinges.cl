@@ -25,20 +25,23 @@ APSLK_INLINE float3 ahead_of_start(float4 moved, float4 motion, float time_step,
     return moved.xyz + duration * (APSLK_BENDING_LEAD * before - velocity);
 }
 
-// Gradients times √k, and moments √k (θ − θ⁰). Hinges of cloth c: hinge_offsets[c] to hinge_offsets[c + 1].
+// Gradients times √k, and moments √k (θ − θ⁰). Hinges of cloth c: hinge_offsets[c] to hinge_offsets[c + 1]. In the
+// first part also the energy Σ ½ k (θ − θ⁰)² that they hold.
 APSLK_KERNEL void bend_hinges(__global const apslk_parameters* parameters, __global const apslk_solve_state* states,
-                              __global const uint* hinge_offsets, __global const uint* hinge_order,
-                              __global const uint4* hinges, __global const uint* hinge_corner_offsets,
-                              __global const float4* moved, __global const float4* motion,
-                              __global apslk_hinge_gradients* gradients, __global float* moments,
-                              __global const float* rest_hinges, ulong rest_hinge_offset,
+                              __global float* partials, __global const uint* hinge_offsets,
+                              __global const uint* hinge_order, __global const uint4* hinges,
+                              __global const uint* hinge_corner_offsets, __global const float4* moved,
+                              __global const float4* motion, __global apslk_hinge_gradients* gradients,
+                              __global float* moments, __global const float* rest_hinges, ulong rest_hinge_offset,
                               int part APSLK_ACCELERATIONS_ARGUMENT) {
+    APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const uint first_hinge = hinge_offsets[c];
     const apslk_range range = share_of(hinge_offsets[c + 1] - first_hinge, bends_in(parameters[c], states[c], part, 0));
     const float time_step = parameters[c].time_step, duration = time_step / (float)max(parameters[c].small_steps, 1);
     const apslk_free_part free = free_part(parameters + c, APSLK_ACCELERATIONS);
     const float reach = bending_step(parameters[c].bending_iterations, 0).reach;
+    float energy = 0.0f;
     for (uint h = range.first; h < range.end; h += APSLK_WORK_GROUP_SIZE) {
         const uint r = first_hinge + h;
         const uint4 v = hinges[r];
@@ -65,8 +68,12 @@ APSLK_KERNEL void bend_hinges(__global const apslk_parameters* parameters, __glo
         gradients[r].at_second = (float4)(root * hinge.gradients.at_second.xyz, hinge.gradients.at_second.w);
         // Not remainder(), nor hypot() elsewhere: AMD's newer device libraries compute them in double precision.
         const float turn = 2.0f * M_PI_F, bent = hinge.angle - rest.x;
-        moments[r] = root * (bent - turn * rint(bent / turn));
+        const float moment = root * (bent - turn * rint(bent / turn));
+        moments[r] = moment;
+        energy += 0.5f * moment * moment;
     }
+    const float held = group_sum(energy, scratch);
+    if (part == 0) store_partial(partials, APSLK_PARTIAL_BENDING_ENERGY, held);
 }
 
 // A hinge's gradients times the steps of its vertices.

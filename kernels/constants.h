@@ -75,6 +75,9 @@
 // Bends are those of positions this far on in the part, by the velocities of its start: a damping.
 #define APSLK_BENDING_LEAD 0.25f
 
+// What the root of a whole step's energy may be off by, which the discrete step is (docs/formulation.md, Energy).
+#define APSLK_ENERGY_LET_PASS 1.001f
+
 // Safety factor of the bound of the matrix. With Options::bound_interval above 1 the directions in it are those of an
 // earlier sub-step, and the cloth has moved since.
 #define APSLK_BOUND_MARGIN 1.1f

@@ -34,6 +34,10 @@ APSLK_KERNEL void predict_positions(__global const apslk_cloth* cloths, __global
     store_partial(partials, APSLK_PARTIAL_LOG_MASSES, group_sum(sums.log_masses, scratch));
     store_partial(partials, APSLK_PARTIAL_MOVABLE, group_sum(sums.movable, scratch));
     store_partial(partials, APSLK_PARTIAL_EXTENT, group_max(sums.extent, scratch));
+#if APSLK_INTEGRATES
+    store_drive_partials(sums.drive, partials, scratch);
+    store_partial(partials, APSLK_PARTIAL_BENDING_ENERGY, 0.0f);  // until bend_hinges finds any
+#endif
     if (get_group_id(0) == 0 && get_local_id(0) == 0) {
         states[c].stopped = !parameters[c].enabled;
         states[c].discarded = 0;

@@ -2,6 +2,7 @@
 // The decisions of Algorithm 1, taken on the device by one work-group a cloth: judge the whole step, begin a solve, end
 // a call. Reference: apsl::reference, strain_limiter.
 #include "accept_or_reject.h"
+#include "energy_bound.h"
 #include "layout.h"
 #include "limits_stretch.h"
 #include "offender.h"
@@ -87,6 +88,12 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_so
     const float extent = max_partials(partials, APSLK_PARTIAL_EXTENT, groups, scratch);
     const float raised = sum_partials(partials, APSLK_PARTIAL_RAISED, groups, scratch);
     const float mass_ratio = max_partials(partials, APSLK_PARTIAL_MASS_RATIO, groups, scratch);
+#if APSLK_INTEGRATES
+    const float free_energy = sum_partials(partials, APSLK_PARTIAL_FREE_ENERGY, groups, scratch) +
+                              2.0f * sum_partials(partials, APSLK_PARTIAL_BENDING_ENERGY, groups, scratch);
+    const float energy = sum_partials(partials, APSLK_PARTIAL_ENERGY, groups, scratch);
+    const float faster_body = max_partials(partials, APSLK_PARTIAL_FASTER_BODY, groups, scratch);
+#endif
 #if APSLK_LIMITS_STRETCH
     const float stretch_rows = sum_partials(partials, APSLK_PARTIAL_STRETCH_ROWS, groups, scratch);
 #endif
@@ -105,6 +112,10 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_so
     if (verdict.rose) stats[c].status = APSLK_STATUS_WORSENED;
     if (diverged) stats[c].status = APSLK_STATUS_DIVERGED;
     states[c].discarded = diverged || verdict.worse || none;
+#if APSLK_INTEGRATES
+    const float driven = (states[c].pins + faster_body) * sqrt(states[c].mass);
+    states[c].velocity_kept = velocity_kept_by_energy(sqrt(free_energy), driven, sqrt(energy));
+#endif
     if (stats[c].status == APSLK_STATUS_OFF) return;
     stats[c].raised_vertices = (uint)raised;
     stats[c].greatest_mass_ratio = mass_ratio;

@@ -15,7 +15,7 @@ APSLK_KERNEL void store_step(__global const apslk_cloth* cloths, __global const 
                              ulong contact_offset APSLK_ACCELERATIONS_ARGUMENT) {
     const uint c = (uint)get_group_id(1);
     const bool active = parameters[c].enabled && stats[c].status != APSLK_STATUS_DIVERGED;
-    store_end_of_step(cloths[c], active, !states[c].discarded, parameters[c].time_step,
-                      free_step(parameters + c, APSLK_ACCELERATIONS), vertex_order, moved, motion,
-                      positions + position_offset, velocities + velocity_offset, contacts + contact_offset);
+    store_end_of_step(cloths[c], active, !states[c].discarded, vload3(0, states[c].drive), states[c].velocity_kept,
+                      parameters[c].time_step, free_step(parameters + c, APSLK_ACCELERATIONS), vertex_order, moved,
+                      motion, positions + position_offset, velocities + velocity_offset, contacts + contact_offset);
 }

@@ -7,6 +7,7 @@
 #include "caller_vectors.h"
 #include "contact.h"
 #include "effective_mass.h"
+#include "energy_bound.h"
 #include "free_motion.h"
 #include "gradients.h"
 #include "layout.h"
@@ -60,6 +61,9 @@ typedef struct {
     float log_masses;  // Σ log₂ m of movable vertices
     float movable;     // vertices
     float extent;      // greatest |coordinate|, m
+#if APSLK_INTEGRATES
+    apslk_drive_sums drive;
+#endif
 } apslk_vertex_sums;
 
 // moved = (x̃ + Δt ṽ outside of contacts, w), and before small steps motion = (x̃, w), in the limiter's order of
@@ -70,7 +74,14 @@ APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, 
                                                 __global const float* positions, __global const float* velocities,
                                                 __global const float* inverse_masses, __global const float* contacts) {
     const apslk_range range = share_of(cloth.vertex_count, active);
-    apslk_vertex_sums sums = {0.0f, 0.0f, 0.0f, 0.0f};
+    apslk_vertex_sums sums;
+    sums.bad = 0.0f;
+    sums.log_masses = 0.0f;
+    sums.movable = 0.0f;
+    sums.extent = 0.0f;
+#if APSLK_INTEGRATES
+    sums.drive = no_drive();
+#endif
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, i = vertex_order[place];
         const float w = inverse_masses[(ulong)i * APSLK_INVERSE_MASS_STRIDE];
@@ -82,6 +93,10 @@ APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, 
         sums.log_masses += w > 0.0f ? -log2(w) : 0.0f;
         sums.movable += w > 0.0f ? 1.0f : 0.0f;
         sums.extent = fmax(sums.extent, fmax(fabs(x.x), fmax(fabs(x.y), fabs(x.z))));
+#if APSLK_INTEGRATES
+        const float3 velocity = after_free_step(free, place, load_velocity(velocities, i), w);
+        add_to_drive(&sums.drive, velocity, w, contacts, i);
+#endif
     }
     return sums;
 }
@@ -299,12 +314,13 @@ APSLK_INLINE void store_positions(apslk_cloth cloth, bool active, __global const
     }
 }
 
-// Where a whole step ends. `limited`: as moved and motion have it; otherwise as `free` and contacts have it. A vertex
-// whose end is not finite stays.
-APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited, float time_step, apslk_free_step free,
-                                    __global const uint* vertex_order, __global const float4* moved,
-                                    __global const float4* motion, __global float* positions,
-                                    __global float* velocities, __global const float* contacts) {
+// Where a whole step ends. `limited`: as moved and motion have it, with `kept` of the velocity in a frame that moves
+// with `drive`; otherwise as `free` and contacts have it. A vertex whose end is not finite stays.
+APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited, float3 drive, float kept,
+                                    float time_step, apslk_free_step free, __global const uint* vertex_order,
+                                    __global const float4* moved, __global const float4* motion,
+                                    __global float* positions, __global float* velocities,
+                                    __global const float* contacts) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, i = vertex_order[place];
@@ -315,7 +331,9 @@ APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited
             end_of_step(positions, velocities, place, i, step.w, time_step, free, contacts);
         const float3 free_after =
             unlimited.touches ? unlimited.motion * (1.0f / time_step) : after_free_step(free, place, before, step.w);
-        const float3 after = moves ? step.xyz * (1.0f / time_step) : free_after;
+        const float3 velocity = step.xyz * (1.0f / time_step);
+        const float3 limited_after = kept < 1.0f ? drive + kept * (velocity - drive) : velocity;
+        const float3 after = moves ? limited_after : free_after;
         const float3 x = moves ? end.xyz : unlimited.position;
         if (!all(isfinite(after)) || !all(isfinite(x))) continue;
         store_vector(x, positions + (ulong)i * APSLK_POSITION_STRIDE, APSLK_POSITION_COMPONENT_STRIDE);

@@ -131,7 +131,7 @@ APSLK_INLINE float sum_partials(__global float* partials, uint kind, uint groups
 
 APSLK_INLINE float max_partials(__global float* partials, uint kind, uint groups, __local float* scratch) {
     __global const float* p = partials_of(partials, kind, groups);
-    float greatest = 0.0f;
+    float greatest = -FLT_MAX;
     for (uint first = 0; first < groups; first += APSLK_WORK_GROUP_SIZE) {
         const uint g = first + (uint)get_local_id(0);
         if (g < groups) greatest = fmax(greatest, p[g]);

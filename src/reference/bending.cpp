@@ -87,6 +87,7 @@ void Bending<Real>::find_velocity_changes(std::span<const Real> positions, std::
     const Real duration = static_cast<Real>(parameters.time_step) / parts;
     const BendingPolynomial<Real> polynomial(parameters.bending_iterations);
     changes_.assign(positions.size(), Real(0));
+    rows_.clear();
     if (!(parameters.bending > 0.0f)) return;
 
     ahead_.resize(positions.size());
@@ -115,6 +116,13 @@ void Bending<Real>::find_velocity_changes(std::span<const Real> positions, std::
             changes_[n] += step_[n];
         }
     }
+}
+
+template <class Real>
+double Bending<Real>::energy() const {
+    double sum = 0.0;
+    for (const HingeRow<Real>& row : rows_) sum += 0.5 * static_cast<double>(row.moment * row.moment);
+    return sum;
 }
 
 template <class Real>

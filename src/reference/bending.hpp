@@ -68,6 +68,7 @@ public:
     void find_velocity_changes(std::span<const Real> positions, std::span<const Real> motion,
                                const ResolvedParameters& parameters);
     std::span<const Real> velocity_changes() const { return changes_; }  ///< m/s, [3V]
+    double energy() const;                                               ///< J, at the start of that small step
 
     std::size_t bytes() const;  ///< held between calls
 

@@ -12,6 +12,7 @@
 #include "reference/contact.hpp"
 #include "reference/displacements.hpp"
 #include "reference/effective_masses.hpp"
+#include "reference/energy_bound.hpp"
 #include "reference/free_motion.hpp"
 #include "reference/geometry.hpp"
 #include "reference/matrix.hpp"
@@ -84,6 +85,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     ChebyshevScratch<Real> chebyshev_scratch;
     StretchLimiting<Real> stretches;  ///< with Options::limits_stretch
     Bending<Real> bending;            ///< with Options::bends
+    EnergyBound<Real> energy;         ///< with Options::integrates
     Stats stats{};
 
     void predict(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
@@ -98,6 +100,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             for (std::size_t n = 0; n < unlimited.size(); ++n)
                 unlimited[n] = free.end(buffers.velocities[n], n, buffers.inverse_masses);
         }
+        if (options.integrates) energy = EnergyBound<Real>(buffers, unlimited);
         if (options.keeps_contacts)
             for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i)
                 if (buffers.inverse_masses[i] > Real(0)) keep_end(i, buffers, time_step);
@@ -157,6 +160,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         motion.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) motion[n] = time_step * buffers.velocities[n];
         begin_part(buffers, parameters, 0);
+        if (options.bends) energy.add_bending(bending.energy());
         return standing(buffers);
     }
 
@@ -363,6 +367,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             velocities[n] = moves ? motion[n] / time_step : unlimited[n];
             if (!moves) moved[n] = predicted[n];
         }
+        if (limited) energy.apply(velocities);
         if (!all_finite<Real>(moved) || !all_finite<Real>(velocities)) return false;
         std::copy(moved.begin(), moved.end(), buffers.end_positions.begin());
         std::copy(velocities.begin(), velocities.end(), buffers.velocities.begin());

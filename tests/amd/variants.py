@@ -55,6 +55,8 @@ NOT_FOR_GPUS = {"filter_in_one_group.cl": ({"APSLK_WARM_START_SUB_STEPS": 8}, {"
                                            {"APSLK_KEEPS_CONTACTS": 1}, {"APSLK_TETHERS": 2}),
                 "store_step.cl": (*_WITHOUT_FORCES, {"APSLK_INTEGRATES": 0}, {"APSLK_POSITIONS_ONLY": 1}, {"APSLK_LIMITS_STRETCH": 1},
                                   *_CONTACTS_APART, *_ACCELERATIONS_APART),
+                "measure_energy.cl": ({"APSLK_INTEGRATES": 0}, {"APSLK_POSITIONS_ONLY": 1}, *_CONTACTS_APART,
+                                      *_ACCELERATIONS_APART),
                 **{file: ({"APSLK_LIMITS_STRETCH": 1},) for file in ("matrix_free_consistent.cl", "finish_solve.cl")},
                 "predict_positions.cl": (*_WITHOUT_FORCES, {"APSLK_LIMITS_STRETCH": 1}, {"APSLK_POSITIONS_ONLY": 1, "APSLK_INTEGRATES": 1},
                                          *_CONTACTS_APART),

@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <random>
 
 using namespace apsl;
 using namespace apsl::test;
@@ -215,6 +216,14 @@ double greatest_speed(const std::vector<double>& velocities) {
     return greatest;
 }
 
+/// J, in the frame of what stands still, with what free fall adds in a step of `time_step`.
+double free_energy(const MovingCloth& cloth, const Parameters& parameters) {
+    MovingCloth free = cloth;
+    for (std::size_t n = 0; n < free.velocities.size(); ++n)
+        free.velocities[n] += static_cast<double>(parameters.time_step * parameters.acceleration[n % 3]);
+    return kinetic_energy(free);
+}
+
 /// Of a call for which a few large triangles are 0.2 to 0.35 over their ceiling. Two have two pinned corners each,
 /// which stand too near to one another for ceiling and area at once.
 void check_comes_back(double speed, double entering_speed, double most, const Stats& stats) {
@@ -244,6 +253,52 @@ TEST_CASE("a whole step: what starts far over its ceiling, and cannot get below,
                      {filter_with_reference(cloth, filters, parameters), filter_on_device(cloth, filters, parameters)})
                     check_comes_back(greatest_speed(end.velocities), entering, 5.0, end.stats);
             }
+}
+
+TEST_CASE("a whole step: a cloth at pins that stand still has no more energy than it would have without limits",
+          "[filter][whole_step][energy]") {
+    // Crumpled, and stretched away from its pins: what corrects that leaves the cloth no faster.
+    for (const double stretch : {1.0, 1.3}) {
+        MovingCloth cloth = flat_sheet(17, {0, 16});
+        std::mt19937 random(1);
+        std::uniform_real_distribution<double> offset(-0.005, 0.005);
+        for (std::size_t n = 0; n < cloth.positions.size(); ++n)
+            if (cloth.inverse_masses[n / 3] > 0.0) {
+                const double scale = n % 3 == 2 ? stretch : 1.0;
+                cloth.positions[n] =
+                    static_cast<double>(static_cast<float>(scale * (cloth.positions[n] + offset(random))));
+            }
+        StrainLimiter limiter(device().context, device().id, cloth.topology, with_ceiling);
+        const Parameters parameters{.stretch_ceiling = 1.05f, .acceleration = {0.0f, -gravity, 0.0f}};
+        for (int frame = 0; frame < 20; ++frame) {
+            const double free = free_energy(cloth, parameters);
+            const Ended end = step_on_device(limiter, cloth, with_ceiling, parameters);
+            cloth.positions = end.positions;
+            cloth.velocities = end.velocities;
+            CAPTURE(stretch, frame, free, end.stats.max_area_change, end.stats.max_stretch, end.stats.status);
+            CHECK(kinetic_energy(cloth) <= 1.003 * free);
+            CHECK(end.stats.status == Status::ok);
+            if (frame >= 10) CHECK(end.stats.max_area_change < 0.005f);
+            if (frame >= 10) CHECK(end.stats.max_stretch < 1.06f);
+        }
+    }
+}
+
+TEST_CASE("a whole step: the device has the reference's energy, whatever drives the cloth",
+          "[filter][whole_step][energy]") {
+    Options touching = with_ceiling;
+    touching.keeps_contacts = true;
+    for (const Options& options : {with_ceiling, touching})
+        for (const bool pinned : {true, false}) {
+            MovingCloth cloth = moving_cloth(grid(9, 7, 1.0, 0.7, Diagonals::uniform), 3);
+            for (double& w : cloth.inverse_masses)
+                if (!pinned && w == 0.0) w = 20.0;
+            for (double& v : cloth.velocities) v *= 0.25;  // little of its own: the corrections would have it faster
+            CAPTURE(options.keeps_contacts, pinned);
+            Parameters parameters = falling(12, 1.02f);
+            parameters.acceleration = {0.0f, 0.0f, 0.0f};
+            check_step_against_reference(cloth, options, parameters);
+        }
 }
 
 TEST_CASE("a whole step: positions must be writable", "[filter][whole_step]") {

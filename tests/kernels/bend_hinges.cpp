@@ -71,8 +71,13 @@ void bend(Arrays& arrays, const Build& build, int part, int iterations) {
     for (int k = 0; k < iterations; ++k) launch::bend_vertices(arrays, build, part, k);
 }
 
-std::vector<double> reference_changes(const Cloth& cloth, const std::vector<double>& start,
-                                      const std::vector<double>& motion, const Parameters& p) {
+struct Bent {
+    std::vector<double> changes;  // m/s
+    double energy;                // J
+};
+
+Bent bent_by_reference(const Cloth& cloth, const std::vector<double>& start, const std::vector<double>& motion,
+                       const Parameters& p) {
     reference::Bending<double> reference(*cloth.topology);
     reference.start({.positions = {},
                      .velocities = {},
@@ -81,7 +86,7 @@ std::vector<double> reference_changes(const Cloth& cloth, const std::vector<doub
                      .regularization = {},
                      .rest_hinges = cloth.rest_hinges});
     reference.find_velocity_changes(start, motion, ResolvedParameters(p, bending_options));
-    return {reference.velocity_changes().begin(), reference.velocity_changes().end()};
+    return {{reference.velocity_changes().begin(), reference.velocity_changes().end()}, reference.energy()};
 }
 
 }  // namespace
@@ -105,7 +110,9 @@ TEST_CASE("bend_hinges, bend_vertices: the reference's changes of velocity, and 
             std::size_t i = 0;
             for (std::size_t c = 0; c < cloths.size(); ++c) {
                 CAPTURE(c);
-                const std::vector<double> want = reference_changes(cloths[c], begun.start[c], begun.motion[c], p);
+                const auto [want, energy] = bent_by_reference(cloths[c], begun.start[c], begun.motion[c], p);
+                const std::vector<double> energies = arrays.partials_of(c, APSLK_PARTIAL_BENDING_ENERGY);
+                CHECK(energies[0] + energies[1] == Approx(energy).epsilon(2e-4).margin(1e-9));
                 std::vector<double> got, got_positions, want_positions;
                 for (std::size_t v = 0; v < cloths[c].topology->vertex_count(); ++v, ++i) {
                     const std::uint32_t place = arrays.vertex_places[i];

@@ -237,6 +237,11 @@ void update_velocities(Arrays& a, const Build& build) {
     run(arguments::update_velocities(k, a, caller(a, build)), a.groups, build, a.cloth_count());
 }
 
+void measure_energy(Arrays& a, const Build& build) {
+    const host::Kernel& k = kernel(a, build, "measure_energy.cl", "measure_energy");
+    run(arguments::measure_energy(k, a, caller(a, build)), a.groups, build, a.cloth_count());
+}
+
 void store_step(Arrays& a, const Build& build) {
     const host::Kernel& k = kernel(a, build, "store_step.cl", "store_step");
     run(arguments::store_step(k, a, caller(a, build)), a.groups, build, a.cloth_count());

@@ -64,6 +64,7 @@ void chebyshev_step(Arrays& arrays, const Build& build, int sub_step, int launch
 void finish_solve(Arrays& arrays, const Build& build, int iterations);
 void gather_displacements(Arrays& arrays, const Build& build, std::uint32_t slot, int sub_step = 0);
 void update_velocities(Arrays& arrays, const Build& build);
+void measure_energy(Arrays& arrays, const Build& build);
 void store_step(Arrays& arrays, const Build& build);
 void filter_in_one_group(Arrays& arrays, const Build& build);
 

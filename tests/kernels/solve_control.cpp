@@ -95,6 +95,34 @@ TEST_CASE("end_call: greatest and RMS change of all groups", "[end_call]") {
     }
 }
 
+TEST_CASE("end_call: the share of its velocity that a whole step keeps", "[end_call][energy]") {
+    // Roots of Σ m |u|²: free 3, or with 8 J in hinges 5; left 10; of 4 kg at what drives them twice its speed.
+    const auto kept = [](std::uint32_t group, double bending, float pins, double body, double left = 100.0) {
+        Reported reported(paper_setting);
+        reported.arrays.write_partials(0, APSLK_PARTIAL_FREE_ENERGY, {2.0, 0.0, 3.0, 4.0, 0.0});
+        reported.arrays.write_partials(0, APSLK_PARTIAL_BENDING_ENERGY, {bending, 0.0, 0.0, 0.0, 0.0});
+        reported.arrays.write_partials(0, APSLK_PARTIAL_ENERGY, {0.5 * left, 0.0, 0.0, 0.0, 0.5 * left});
+        reported.arrays.write_partials(0, APSLK_PARTIAL_FASTER_BODY, {0.0, body, 0.0, 0.5 * body, 0.0});
+        reported.arrays.edit_states([&](apslk_solve_state& state) {
+            state.pins = pins;
+            state.mass = 4.0f;
+        });
+        launch::end_call(reported.arrays, {.work_group_size = group, .integrates = true});
+        return reported.state().velocity_kept;
+    };
+    for (const std::uint32_t group : work_group_sizes()) {
+        CAPTURE(group);
+        CHECK(kept(group, 0.0, 0.0f, 0.0) == Approx(0.3));
+        CHECK(kept(group, 8.0, 0.0f, 0.0) == Approx(0.5));
+        CHECK(kept(group, 0.0, 0.5f, 0.0) == Approx(0.4));
+        CHECK(kept(group, 0.0, 0.5f, 1.0) == Approx(0.6));
+        CHECK(kept(group, 0.0, 5.0f, 0.0) == 1.0f);
+        CHECK(kept(group, 0.0, 0.0f, 0.0, 8.0) == 1.0f);
+        CHECK(kept(group, 0.0, 0.0f, 0.0, 9.01) == 1.0f);  // what is let pass
+        CHECK(kept(group, 0.0, 0.0f, 0.0, infinity) == 0.0f);
+    }
+}
+
 TEST_CASE("end_call: a call that went wrong is diverged, no measured triangle means no change", "[end_call]") {
     Reported wrong(paper_setting);
     wrong.arrays.write_partials(0, APSLK_PARTIAL_NOT_FINITE, {0.0, 0.0, 2.0, 0.0, 0.0});

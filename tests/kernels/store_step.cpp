@@ -72,6 +72,35 @@ TEST_CASE("store_step: where small steps ended, strides, offsets and awkward siz
         }
 }
 
+TEST_CASE("store_step: of too much energy a share is kept, in the frame of what drives the cloth",
+          "[store_step][energy]") {
+    const std::vector<Cloth> cloths{make_cloth(strip(20), 3)};
+    Arrays arrays(cloths, Matrix::consistent, falling, 2);
+    end_small_steps(arrays, 7);
+    arrays.edit_states([](apslk_solve_state& state) {
+        state.drive[0] = 1.0f;
+        state.drive[1] = -2.0f;
+        state.drive[2] = 3.0f;
+        state.velocity_kept = 0.25f;
+    });
+    const std::vector<cl_float4> moved = arrays.moved.read(), motion = arrays.motion.read();
+    const std::vector<float> given = arrays.caller_velocities.read();
+    launch::store_step(arrays, integrating());
+    const std::vector<float> x = arrays.caller_positions.read(), u = arrays.caller_velocities.read();
+    const double drive[] = {1.0, -2.0, 3.0};
+    for (std::size_t n = 0; n < u.size(); ++n) {
+        CAPTURE(n);
+        if (cloths[0].inverse_masses[n / 3] == 0.0) {
+            CHECK(u[n] == given[n]);
+            continue;
+        }
+        const std::uint32_t place = arrays.vertex_places[n / 3];
+        const double velocity = static_cast<double>(motion[place].s[n % 3]) / static_cast<double>(falling.time_step);
+        CHECK(static_cast<double>(u[n]) == Approx(drive[n % 3] + 0.25 * (velocity - drive[n % 3])).margin(1e-5));
+        CHECK(x[n] == moved[place].s[n % 3]);  // positions are as they were corrected
+    }
+}
+
 TEST_CASE("store_step: a discarded call leaves free motion, a diverged one everything", "[store_step]") {
     const std::vector<Cloth> cloths{make_cloth(strip(20), 3)};
     Arrays arrays(cloths, Matrix::consistent, falling, 2);

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// What a whole step may leave of kinetic energy (docs/formulation.md, Energy). Reference: apsl::reference,
+// energy_bound.
+#ifndef APSLK_ENERGY_BOUND_H
+#define APSLK_ENERGY_BOUND_H
+
+#include "contact.h"
+#include "free_motion.h"
+#include "layout.h"
+#include "work_group.h"
+
+// Over vertices: what those that move carry where nothing but acceleration and damping acts, the box around the
+// velocities of pins, and whether anything may be touched.
+typedef struct {
+    float3 momentum;         // kg m/s
+    float mass;              // kg
+    float3 greatest, least;  // m/s; the greatest is below the least where there are no pins
+    float touches;           // 0 or 1
+} apslk_drive_sums;
+
+APSLK_INLINE apslk_drive_sums no_drive(void) {
+    const apslk_drive_sums sums = {(float3)(0.0f), 0.0f, (float3)(-FLT_MAX), (float3)(FLT_MAX), 0.0f};
+    return sums;
+}
+
+APSLK_INLINE bool may_touch(__global const float* contacts, uint vertex) {
+#if APSLK_KEEPS_CONTACTS
+    return any(vload4(2ul * vertex, contacts).xyz != 0.0f);
+#else
+    (void)contacts;
+    (void)vertex;
+    return false;
+#endif
+}
+
+// `velocity`: at the end of the step, free.
+APSLK_INLINE void add_to_drive(apslk_drive_sums* sums, float3 velocity, float inverse_mass,
+                               __global const float* contacts, uint vertex) {
+    if (inverse_mass > 0.0f) {
+        sums->momentum += velocity / inverse_mass;
+        sums->mass += 1.0f / inverse_mass;
+        if (may_touch(contacts, vertex)) sums->touches = 1.0f;
+    } else {
+        sums->greatest = fmax(sums->greatest, velocity);
+        sums->least = fmin(sums->least, velocity);
+    }
+}
+
+// A kind of partial results for each of x, y and z.
+APSLK_INLINE void store_partial_sums_xyz(__global float* partials, uint kind, float3 v, __local float* scratch) {
+    store_partial(partials, kind, group_sum(v.x, scratch));
+    store_partial(partials, kind + 1u, group_sum(v.y, scratch));
+    store_partial(partials, kind + 2u, group_sum(v.z, scratch));
+}
+
+APSLK_INLINE void store_partial_maxima_xyz(__global float* partials, uint kind, float3 v, __local float* scratch) {
+    store_partial(partials, kind, group_max(v.x, scratch));
+    store_partial(partials, kind + 1u, group_max(v.y, scratch));
+    store_partial(partials, kind + 2u, group_max(v.z, scratch));
+}
+
+APSLK_INLINE float3 sum_partials_xyz(__global float* partials, uint kind, uint groups, __local float* scratch) {
+    const float x = sum_partials(partials, kind, groups, scratch);
+    const float y = sum_partials(partials, kind + 1u, groups, scratch);
+    return (float3)(x, y, sum_partials(partials, kind + 2u, groups, scratch));
+}
+
+APSLK_INLINE float3 max_partials_xyz(__global float* partials, uint kind, uint groups, __local float* scratch) {
+    const float x = max_partials(partials, kind, groups, scratch);
+    const float y = max_partials(partials, kind + 1u, groups, scratch);
+    return (float3)(x, y, max_partials(partials, kind + 2u, groups, scratch));
+}
+
+APSLK_INLINE void store_drive_partials(apslk_drive_sums sums, __global float* partials, __local float* scratch) {
+    store_partial(partials, APSLK_PARTIAL_MASS, group_sum(sums.mass, scratch));
+    store_partial_sums_xyz(partials, APSLK_PARTIAL_MOMENTUM, sums.momentum, scratch);
+    store_partial_maxima_xyz(partials, APSLK_PARTIAL_GREATEST_PIN, sums.greatest, scratch);
+    store_partial_maxima_xyz(partials, APSLK_PARTIAL_LEAST_PIN, -sums.least, scratch);
+    store_partial(partials, APSLK_PARTIAL_TOUCHES, group_max(sums.touches, scratch));
+}
+
+// What drives a cloth, and the frame that energies are measured in.
+typedef struct {
+    float3 velocity;  // m/s, of the frame
+    float pins;       // m/s, of pins there
+    float mass;       // kg, of vertices that move
+} apslk_drive;
+
+// The frame is the middle of the box around the velocities of the pins. Of a cloth without pins it is its own mean
+// velocity, or, where it may touch something, what stands still.
+APSLK_INLINE apslk_drive find_drive(__global float* partials, uint groups, __local float* scratch) {
+    const float3 momentum = sum_partials_xyz(partials, APSLK_PARTIAL_MOMENTUM, groups, scratch);
+    const float3 greatest = max_partials_xyz(partials, APSLK_PARTIAL_GREATEST_PIN, groups, scratch);
+    const float3 least = -max_partials_xyz(partials, APSLK_PARTIAL_LEAST_PIN, groups, scratch);
+    const bool touches = max_partials(partials, APSLK_PARTIAL_TOUCHES, groups, scratch) > 0.0f;
+    const float mass = sum_partials(partials, APSLK_PARTIAL_MASS, groups, scratch);
+    const bool pinned = greatest.x >= least.x;
+    apslk_drive drive;
+    drive.mass = mass;
+    drive.velocity = (float3)(0.0f);
+    drive.pins = 0.0f;
+    if (pinned) {
+        drive.velocity = 0.5f * least + 0.5f * greatest;
+        drive.pins = length(0.5f * greatest - 0.5f * least);
+    } else if (!touches && mass > 0.0f) {
+        drive.velocity = momentum / mass;
+    }
+    return drive;
+}
+
+// m/s: what a body is faster than the vertex that may touch it, both in the frame. 0: nothing, or slower.
+APSLK_INLINE float speed_beyond(float3 velocity, float3 frame, __global const float* contacts, uint vertex) {
+#if APSLK_KEEPS_CONTACTS
+    if (!may_touch(contacts, vertex)) return 0.0f;
+    return fmax(length(vload4(2ul * vertex + 1ul, contacts).xyz - frame) - length(velocity - frame), 0.0f);
+#else
+    (void)velocity;
+    (void)frame;
+    (void)contacts;
+    (void)vertex;
+    return 0.0f;
+#endif
+}
+
+// The share of its velocity that a cloth keeps in the frame. Roots of Σ m |u|² there: `free`, with what hinges hold at
+// the start of the step, `driven` of all mass at the speed of what drives it, and `left` by the step.
+APSLK_INLINE float velocity_kept_by_energy(float free, float driven, float left) {
+    const float allowed = free + driven;
+    return left > APSLK_ENERGY_LET_PASS * allowed ? allowed / left : 1.0f;
+}
+
+#endif

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/launch.hpp"
+#include "reference/energy_bound.hpp"
+#include "support/tolerances.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+using namespace apsl;
+using namespace apsl::test;
+
+namespace {
+
+constexpr Parameters falling{
+    .sub_steps = 5, .acceleration = {1.0f, -9.81f, 0.5f}, .damping = 0.7f, .stepping = Stepping::small_steps};
+constexpr int parts = 4;
+
+/// Velocities at the end of a step of acceleration and damping alone.
+std::vector<double> free_velocities(const Cloth& cloth, bool own_accelerations) {
+    std::vector<double> free = cloth.velocities;
+    const double duration = static_cast<double>(falling.time_step) / parts;
+    const double kept = std::exp(-static_cast<double>(falling.damping) * duration);
+    for (std::size_t n = 0; n < free.size(); ++n) {
+        if (!(cloth.inverse_masses[n / 3] > 0.0)) continue;
+        const double acceleration =
+            static_cast<double>(falling.acceleration[n % 3]) + (own_accelerations ? cloth.accelerations[n] : 0.0);
+        for (int part = 0; part < parts; ++part) free[n] = kept * (free[n] + duration * acceleration);
+    }
+    return free;
+}
+
+/// Σ m |u − frame|² of what can move.
+double squares(const Cloth& cloth, const std::vector<double>& velocities, const Eigen::Vector3d& frame) {
+    double sum = 0.0;
+    for (std::size_t n = 0; n < velocities.size(); ++n)
+        if (cloth.inverse_masses[n / 3] > 0.0)
+            sum += std::pow(velocities[n] - frame[static_cast<Eigen::Index>(n % 3)], 2) / cloth.inverse_masses[n / 3];
+    return sum;
+}
+
+double sum_of(const std::vector<double>& numbers) {
+    return std::accumulate(numbers.begin(), numbers.end(), 0.0);
+}
+
+/// Where small steps ended: Δt u, with the inverse mass, of random u that are returned, [3V] of all cloths.
+std::vector<double> end_small_steps(Arrays& arrays) {
+    std::vector<cl_float4> motion = arrays.motion.read();
+    const std::vector<double> velocities = random_numbers(3 * motion.size(), -4.0, 4.0, 5);
+    std::size_t i = 0;
+    for (const Cloth& cloth : arrays.sources)
+        for (std::size_t v = 0; v < cloth.topology->vertex_count(); ++v, ++i) {
+            cl_float4& step = motion[arrays.vertex_places[i]];
+            for (std::size_t k = 0; k < 3; ++k)
+                step.s[k] = falling.time_step * static_cast<float>(velocities[3 * i + k]);
+            step.s[3] = static_cast<float>(cloth.inverse_masses[v]);
+        }
+    arrays.motion.write(motion);
+    return velocities;
+}
+
+void check_measured(const std::vector<Cloth>& cloths, const Build& build) {
+    Arrays arrays(cloths, Matrix::consistent, falling, 3, false, {4, 3}, {5, 2});
+    launch::predict_positions(arrays, build);
+    const std::vector<double> velocities = end_small_steps(arrays);
+    launch::measure_energy(arrays, build);
+    std::size_t first = 0;
+    for (std::size_t c = 0; c < cloths.size(); ++c) {
+        const Cloth& cloth = cloths[c];
+        CAPTURE(build.work_group_size, build.keeps_contacts, build.acceleration_per_vertex, c);
+        const std::vector<double> free = free_velocities(cloth, build.acceleration_per_vertex);
+        const reference::Drive want = reference::drive<double>(
+            {.positions = {},
+             .velocities = {},
+             .inverse_masses = cloth.inverse_masses,
+             .rest_areas = {},
+             .regularization = {},
+             .contacts = build.keeps_contacts ? std::span<const double>(cloth.contacts) : std::span<const double>()},
+            free);
+        const std::vector<double> left(velocities.begin() + static_cast<std::ptrdiff_t>(3 * first),
+                                       velocities.begin() + static_cast<std::ptrdiff_t>(3 * first + free.size()));
+        double mass = 0.0;
+        for (const double w : cloth.inverse_masses) mass += w > 0.0 ? 1.0 / w : 0.0;
+        const double tolerance = 1e-4, size = 30.0;
+        const apslk_solve_state state = arrays.states.read()[c];
+        for (std::size_t k = 0; k < 3; ++k)
+            CHECK(static_cast<double>(state.drive[k]) ==
+                  Approx(want.velocity[static_cast<Eigen::Index>(k)]).margin(tolerance * size));
+        CHECK(static_cast<double>(state.mass) == Approx(mass).epsilon(tolerance));
+        const std::vector<double> faster = arrays.partials_of(c, APSLK_PARTIAL_FASTER_BODY);
+        CHECK(static_cast<double>(state.pins) + *std::max_element(faster.begin(), faster.end()) ==
+              Approx(want.speed).epsilon(tolerance).margin(tolerance));
+        CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_FREE_ENERGY)) ==
+              Approx(squares(cloth, free, want.velocity)).epsilon(tolerance).margin(1e-6));
+        CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_ENERGY)) ==
+              Approx(squares(cloth, left, want.velocity)).epsilon(tolerance).margin(1e-6));
+        CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_BENDING_ENERGY)) == 0.0);
+        first += cloth.topology->vertex_count();
+    }
+}
+
+}  // namespace
+
+TEST_CASE("measure_energy: the reference's frame, and the energies of the free and of the limited step in it",
+          "[measure_energy][predict_positions][energy]") {
+    std::vector<Cloth> cloths{make_cloth(strip(131), 3), make_cloth(strip(1), 4)};
+    std::vector<Cloth> free{make_cloth(strip(70), 5), make_cloth(strip(131), 6)};
+    for (Cloth& cloth : free)
+        for (double& w : cloth.inverse_masses) w = w > 0.0 ? w : 2.0;
+    for (const std::uint32_t group : work_group_sizes())
+        for (const bool keeps_contacts : {false, true})
+            for (const bool own_accelerations : {false, true})
+                for (const std::vector<Cloth>& some : {cloths, free})
+                    check_measured(some, {.work_group_size = group,
+                                          .integrates = true,
+                                          .keeps_contacts = keeps_contacts,
+                                          .acceleration_per_vertex = own_accelerations});
+}

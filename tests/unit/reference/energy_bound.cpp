@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "reference/energy_bound.hpp"
+
+#include "unit/reference/sample_cloths.hpp"
+
+#include <apsl/reference.hpp>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+using namespace apsl;
+using namespace apsl::reference;
+using namespace apsl::test;
+
+namespace {
+
+using Numbers = std::vector<double>;
+
+reference::Buffers<double> buffers(const Numbers& inverse_masses, const Numbers& contacts = {}) {
+    return {.positions = {},
+            .velocities = {},
+            .inverse_masses = inverse_masses,
+            .rest_areas = {},
+            .regularization = {},
+            .contacts = contacts};
+}
+
+/// A flat sheet of 0.2 kg, all of it free, that has been crumpled: every vertex is off by up to 1 cm along each axis.
+struct Crumpled {
+    std::shared_ptr<const Topology> topology;
+    Numbers positions, velocities, inverse_masses, rest_areas, rest_shapes;
+
+    explicit Crumpled(const Vector3<double>& velocity) {
+        const Mesh mesh = grid(11, 11, 1.0, 1.0, Diagonals::alternating);
+        topology = Topology::build(mesh.triangles, mesh.vertex_count());
+        positions = mesh.positions;
+        rest_areas = areas<double>(*topology, positions);
+        rest_shapes = reference::rest_shapes<double>(*topology, positions);
+        inverse_masses = reference::inverse_masses<double>(*topology, rest_areas, 0.2);
+        std::mt19937 random(1);
+        std::uniform_real_distribution<double> offset(-0.01, 0.01);
+        for (double& x : positions) x += offset(random);
+        for (std::size_t n = 0; n < positions.size(); ++n)
+            velocities.push_back(velocity[static_cast<Eigen::Index>(n % 3)]);
+    }
+
+    Stats step() {
+        StrainLimiter limiter(topology, {.limits_stretch = true, .integrates = true});
+        limiter.enqueue({.positions = positions,
+                         .velocities = velocities,
+                         .inverse_masses = inverse_masses,
+                         .rest_areas = rest_areas,
+                         .regularization = {},
+                         .rest_shapes = rest_shapes,
+                         .end_positions = positions},
+                        {.stretch_ceiling = 1.01f});
+        return limiter.read_stats();
+    }
+
+    Vector3<double> mean_velocity() const {
+        Vector3<double> momentum = Vector3<double>::Zero();
+        double mass = 0.0;
+        for (std::size_t i = 0; i < inverse_masses.size(); ++i) {
+            momentum += position<double>(velocities, i) / inverse_masses[i];
+            mass += 1.0 / inverse_masses[i];
+        }
+        return momentum / mass;
+    }
+    /// m/s, of any vertex about the mean.
+    double greatest_own_speed() const {
+        double greatest = 0.0;
+        for (std::size_t i = 0; i < inverse_masses.size(); ++i)
+            greatest = std::max(greatest, (position<double>(velocities, i) - mean_velocity()).norm());
+        return greatest;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("energy: what drives a cloth, and in which frame", "[energy]") {
+    const auto check = [](const Drive& got, const Vector3<double>& velocity, double speed) {
+        CHECK((got.velocity - velocity).norm() <= 1e-14);
+        CHECK(got.speed == Approx(speed).margin(1e-14));
+    };
+    // Pins of (1, 0, 0) and (3, 2, 0).
+    const Numbers free{1, 0, 0, 2, 1, 1, 3, 2, 0, 2, 1, 2};
+    check(drive<double>(buffers({0, 1, 0, 1}), free), {2, 1, 0}, std::sqrt(2.0));
+    // There the second vertex has 1 m/s and a plane of 4 m/s, the fourth 2 m/s and a plane of 4 m/s too, or none.
+    const Numbers contacts{0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 6, 1, 0, 0,
+                           0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 2, 1, 4, 0};
+    Numbers fewer = contacts;
+    std::fill(fewer.begin() + 8, fewer.begin() + 11, 0.0);
+    check(drive<double>(buffers({0, 1, 0, 1}, contacts), free), {2, 1, 0}, std::sqrt(2.0) + 3.0);
+    check(drive<double>(buffers({0, 1, 0, 1}, fewer), free), {2, 1, 0}, std::sqrt(2.0) + 2.0);
+    // A body that is slower than what touches it drives nothing.
+    check(drive<double>(buffers({1}, {0, 0, 1, 0, 0, 0, 3, 0}), Numbers{0, 0, -5}), {0, 0, 0}, 0.0);
+    check(drive<double>(buffers({1}, {0, 0, 1, 0, 0, 0, 3, 0}), Numbers{0, 0, -1}), {0, 0, 0}, 2.0);
+    // Masses of 1 and 4 kg, without pins: free in all, or with nothing that they may touch.
+    const Numbers flying{5, 0, 0, 0, 10, 0};
+    check(drive<double>(buffers({1, 0.25}), flying), {1, 8, 0}, 0.0);
+    check(drive<double>(buffers({1, 0.25}, Numbers(16, 0.0)), flying), {1, 8, 0}, 0.0);
+    check(drive<double>(buffers({}), Numbers{}), {0, 0, 0}, 0.0);
+}
+
+TEST_CASE("energy: a cloth at pins that stand still keeps at most that of the free step, by hand", "[energy]") {
+    // 2 kg at 3 m/s beside a pin: Σ m |u|² = 18.
+    const Numbers inverse_masses{0, 0.5}, free{0, 0, 0, 3, 0, 0};
+    const EnergyBound<double> bound(buffers(inverse_masses), free);
+    Numbers slower{0, 0, 0, 0, 2.9, 0}, faster{0, 0, 0, 0, 4, 3}, a_little{0, 0, 0, 0, 3.002, 0};
+    const Numbers slower_before = slower, a_little_before = a_little;
+    bound.apply(slower);
+    CHECK(slower == slower_before);
+    bound.apply(a_little);
+    CHECK(a_little == a_little_before);
+    bound.apply(faster);
+    CHECK(faster[4] == Approx(2.4));
+    CHECK(faster[5] == Approx(1.8));
+}
+
+TEST_CASE("energy: hinges give what they hold, and what drives a cloth what its speed is worth", "[energy]") {
+    // 2 kg at 3 m/s, and 16 J in hinges: 18 + 32 = 2 · 5².
+    const Numbers inverse_masses{0, 0.5}, free{0, 0, 0, 3, 0, 0};
+    EnergyBound<double> bending(buffers(inverse_masses), free);
+    bending.add_bending(16.0);
+    Numbers faster{0, 0, 0, 0, 10, 0};
+    bending.apply(faster);
+    CHECK(faster[4] == Approx(5.0));
+
+    // Pins of 0 and 2 m/s: a frame of 1 m/s, and 1 m/s there. A vertex at rest in it may have as much.
+    const Numbers driven_masses{0, 0, 0.5};
+    const EnergyBound<double> at_rest(buffers(driven_masses), Numbers{0, 0, 0, 2, 0, 0, 1, 0, 0});
+    Numbers from_rest{0, 0, 0, 2, 0, 0, 11, 0, 0};
+    at_rest.apply(from_rest);
+    CHECK(from_rest == Numbers{0, 0, 0, 2, 0, 0, 2, 0, 0});
+    // At 8 m/s there, 1 m/s more.
+    const EnergyBound<double> moving(buffers(driven_masses), Numbers{0, 0, 0, 2, 0, 0, 9, 0, 0});
+    Numbers from_motion{0, 0, 0, 2, 0, 0, 18, 0, 0};
+    moving.apply(from_motion);
+    CHECK(from_motion[6] == Approx(10.0));
+}
+
+TEST_CASE("energy: corrections of positions throw nothing about, and a free cloth keeps its momentum",
+          "[energy][whole_step]") {
+    for (const Vector3<double>& velocity : {Vector3<double>(0, 0, 0), Vector3<double>(3, -20, 1)}) {
+        Crumpled cloth(velocity);
+        CAPTURE(velocity.transpose());
+        double area_change = 1.0;
+        for (int call = 0; call < 4; ++call) {
+            area_change = static_cast<double>(cloth.step().max_area_change);
+            CHECK((cloth.mean_velocity() - velocity).norm() <= 1e-9);
+            // Every vertex would have 0.5 to 2 m/s of its own.
+            CHECK(cloth.greatest_own_speed() <= 1e-6);
+        }
+        CHECK(area_change < 0.01);
+    }
+}
