@@ -50,7 +50,7 @@ def _structs(kernels):
     return found
 
 
-def _type_of(kernels, type_name):
+def type_of(kernels, type_name):
     """numpy's type for what an OpenCL pointer points to; single bytes where it is not known."""
     name = type_name.rstrip("*").removeprefix("const ").strip()
     return np.dtype(_TYPES[name]) if name in _TYPES else _structs(kernels).get(name, np.dtype("u1"))
@@ -104,7 +104,7 @@ def compare(kernels, want, got, type_name, tolerance):
     `want`, `got`: the bytes of a buffer, which holds what an argument of the type `type_name` points to."""
     if got == want:
         return 0.0, []
-    kind = _type_of(kernels, type_name)
+    kind = type_of(kernels, type_name)
     count = len(want) // kind.itemsize
     end = count * kind.itemsize
     wrong, greatest = [] if got[end:] == want[end:] else ["the bytes behind its last entry"], 0.0

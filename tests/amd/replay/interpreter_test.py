@@ -17,7 +17,7 @@ import check_kernels  # noqa: E402
 import coverage  # noqa: E402
 import float_arithmetic as floats  # noqa: E402
 from assembly import UnknownInstruction, kernels_of, parse_instruction  # noqa: E402
-from comparison import TOLERANCE, compare, compare_partials  # noqa: E402
+from comparison import TOLERANCE, compare, compare_partials, type_of  # noqa: E402
 from launch import Grid, run  # noqa: E402
 from memory import DeviceMemory, Fault, LocalMemory  # noqa: E402
 from operands import EXEC, VCC  # noqa: E402
@@ -351,7 +351,7 @@ class Comparison(unittest.TestCase):
         self.assertEqual(len(self.lines([1, 2], [1, 3], "uint*", "u4")), 1)
 
     def test_a_struct_is_compared_field_by_field(self):
-        size = 15 * 4
+        size = type_of(KERNELS, "apslk_solve_state*").itemsize
         want, got = bytearray(size), bytearray(size)
         got[8] = 1
         self.assertIn("iterating", compare(KERNELS, bytes(want), bytes(got), "apslk_solve_state*", TOLERANCE)[1][0])
