@@ -14,7 +14,11 @@ constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
 class PatchGrower {
 public:
     explicit PatchGrower(const Topology& topology)
-        : topology_(topology), placed_(topology.triangle_count(), false), seen_in_(topology.triangle_count(), nowhere) {
+        : topology_(topology),
+          placed_(topology.triangle_count(), false),
+          seen_in_(topology.triangle_count(), nowhere),
+          passed_in_(topology.vertex_count(), nowhere),
+          first_open_(topology.corner_offsets().begin(), topology.corner_offsets().end()) {
         order_.reserve(topology.triangle_count());
     }
 
@@ -33,22 +37,35 @@ public:
             }
             placed_[triangle] = true;
             order_.push_back(triangle);
-            for (const std::uint32_t vertex : topology_.triangles()[triangle]) {
-                const std::uint32_t last = topology_.corner_offsets()[vertex + 1];
-                for (std::uint32_t n = topology_.corner_offsets()[vertex]; n < last; ++n) {
-                    const std::uint32_t neighbour = topology_.corners()[n] / 3;
-                    if (placed_[neighbour] || seen_in_[neighbour] == patch) continue;
-                    seen_in_[neighbour] = patch;
-                    queue_.push_back(neighbour);
-                }
-            }
+            for (const std::uint32_t vertex : topology_.triangles()[triangle]) pass(vertex, patch, next + 1, end);
         }
     }
 
 private:
+    // Queues what lies around a vertex, of which `waiting_from` and later are still to be placed. Looks at each
+    // triangle a few times, not once for each that it shares the vertex with: there may be a million around one.
+    void pass(std::uint32_t vertex, std::uint32_t patch, std::size_t waiting_from, std::size_t end) {
+        if (passed_in_[vertex] == patch) return;
+        // All that is not placed is in the rim already. Behind what fills the patch it would only go there again.
+        const bool in_rim = passed_in_[vertex] != nowhere;
+        passed_in_[vertex] = patch;
+        const std::uint32_t last = topology_.corner_offsets()[vertex + 1];
+        std::uint32_t& first = first_open_[vertex];
+        while (first < last && placed_[topology_.corners()[first] / 3]) ++first;
+        for (std::uint32_t n = first; n < last; ++n) {
+            if (in_rim && queue_.size() - waiting_from >= end - order_.size()) return;
+            const std::uint32_t neighbour = topology_.corners()[n] / 3;
+            if (placed_[neighbour] || seen_in_[neighbour] == patch) continue;
+            seen_in_[neighbour] = patch;
+            queue_.push_back(neighbour);
+        }
+    }
+
     const Topology& topology_;
     std::vector<bool> placed_;
-    std::vector<std::uint32_t> seen_in_;
+    std::vector<std::uint32_t> seen_in_;     // the last patch, by triangle
+    std::vector<std::uint32_t> passed_in_;   // the last patch that went on across a vertex
+    std::vector<std::uint32_t> first_open_;  // of a vertex's corners, those before are of placed triangles
     std::vector<std::uint32_t> queue_;
     std::vector<std::uint32_t> order_;
 };

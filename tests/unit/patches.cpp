@@ -126,3 +126,20 @@ TEST_CASE("patches: the time grows with the triangles, up to 2.1 million") {
     CAPTURE(eighth, whole);
     CHECK(whole < 24.0 * eighth);  // 64 where each triangle looks at all others
 }
+
+TEST_CASE("patches: the time grows with the triangles around one vertex or edge, up to 1.6 million") {
+    Patches patches;
+    const auto seconds = [&](std::uint32_t count, bool at_one_edge) {
+        std::vector<Triangle> triangles;
+        for (std::uint32_t t = 0; t < count; ++t) triangles.push_back({0, at_one_edge ? 1 : t + 1, t + 2});
+        const auto topology = Topology::build(triangles, count + 2);
+        const double taken = test::processor_seconds([&] { patches = build_patches(*topology, 1024); });
+        CHECK(each_once(patches.triangle_order, count));
+        return taken;
+    };
+    for (const bool at_one_edge : {false, true}) {
+        const double eighth = seconds(200'000, at_one_edge), whole = seconds(1'600'000, at_one_edge);
+        CAPTURE(at_one_edge, eighth, whole);
+        CHECK(whole < 24.0 * eighth);  // 64 where each triangle, or each patch, looks at all around the vertex
+    }
+}
