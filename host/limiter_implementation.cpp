@@ -134,6 +134,25 @@ void StrainLimiter::Implementation::queue_parameters(CommandSequence& commands,
     }
 }
 
+int StrainLimiter::Implementation::solve_iterations(const CallBudget& budget, int sub_step) const {
+    if (by_chebyshev()) return queued_products(budget, sub_step, options.limits_stretch);
+    return kernels.finish_solve.handle ? queued_iterations(largest_cloth, budget, sub_step) : budget.max_iterations;
+}
+
+void StrainLimiter::Implementation::check_launches(const CallBudget& budget) const {
+    // An iteration of CG is two.
+    const std::int64_t an_iteration = by_chebyshev() ? 1 : 2;
+    const std::int64_t bending = caller_counts.hinges > 0 ? budget.bending_iterations : 0;
+    if (budget.sub_steps * (an_iteration * budget.max_iterations + bending) <= most_launches) return;
+    std::int64_t launches = budget.sub_steps * bending;
+    for (int sub_step = 0; sub_step < budget.sub_steps; ++sub_step)
+        launches += an_iteration * solve_iterations(budget, sub_step);
+    if (launches > most_launches)
+        invalid("the call would queue " + std::to_string(launches) + " launches for solves and bending in " +
+                std::to_string(budget.sub_steps) + " sub-steps, expected at most " + std::to_string(most_launches) +
+                "; lower sub_steps, max_iterations or bending_iterations, or raise regularization or tolerance");
+}
+
 void StrainLimiter::Implementation::queue_product(CommandSequence& commands, const BufferHandle& multiplied,
                                                   cl_int iteration) const {
     if (assembled())
@@ -163,8 +182,7 @@ void StrainLimiter::Implementation::queue_conjugate_gradient(CommandSequence& co
     queue_assembly(commands, sub_step);
     if (assembled()) launch(commands, arguments::assemble_pressure_csr(kernels.assemble_pressure_csr, arrays));
     if (options.warm_start_sub_steps > 0) queue_guess(commands, pressure);
-    const cl_int queued =
-        kernels.finish_solve.handle ? queued_iterations(largest_cloth, budget, sub_step) : budget.max_iterations;
+    const cl_int queued = solve_iterations(budget, sub_step);
     for (cl_int k = 0; k < queued; ++k) {
         queue_product(commands, arrays.residual, k);
         launch(commands, arguments::cg_update(kernels.cg_update, arrays, pressure, k));
@@ -194,7 +212,7 @@ void StrainLimiter::Implementation::queue_chebyshev(CommandSequence& commands, c
     const BufferHandle& pressure = arrays.pressures[0];
     if (static_cast<std::uint32_t>(sub_step) % options.bound_interval == 0) queue_bound(commands, sub_step);
     queue_assembly(commands, sub_step);
-    const cl_int products = queued_products(budget, sub_step, options.limits_stretch);
+    const cl_int products = solve_iterations(budget, sub_step);
     for (cl_int k = 0; k < products; ++k)
         launch(commands, arguments::chebyshev_step(kernels.chebyshev_step, arrays, pressure, sub_step, products, k));
     launch(commands,
@@ -252,6 +270,7 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
         resolved.emplace_back(p, options);
         if (p.enabled) budget.add(resolved.back());
     }
+    if (!one_group()) check_launches(budget);
     check_queue(queue, wait_list, context, device);
     check_buffers(buffers, options, caller_counts, context);
 

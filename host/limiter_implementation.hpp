@@ -80,6 +80,10 @@ private:
     void share_program(const Implementation& built);
     void create_arrays(const host::Adjacency& adjacency);
     void queue_parameters(host::CommandSequence& commands, std::span<const ResolvedParameters> given) const;
+    /// Iterations of a solve in sub-step `sub_step` that are queued.
+    int solve_iterations(const host::CallBudget& budget, int sub_step) const;
+    /// Throws Error(invalid_argument) where a call would queue more launches than most_launches.
+    void check_launches(const host::CallBudget& budget) const;
     /// The matrix applied to an array, with its dot product.
     void queue_product(host::CommandSequence& commands, const host::BufferHandle& multiplied, cl_int iteration) const;
     void queue_guess(host::CommandSequence& commands, const host::BufferHandle& pressure) const;

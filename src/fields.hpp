@@ -60,6 +60,7 @@ inline constexpr Bounds at_least_one{.least = 1.0};
 inline constexpr std::uint32_t most_tethers = 4;
 /// The host queues each of them.
 inline constexpr Bounds sub_step_count{.least = 0.0, .greatest = 10000.0};
+inline constexpr Bounds iteration_count{.least = 1.0, .greatest = 10000.0};
 
 inline constexpr std::tuple parameter_fields{
     Field{"time_step", &Parameters::time_step, Bounds{.least = 0.0, .least_excluded = true}, "s", "Δt of Algorithm 1.",
@@ -75,7 +76,7 @@ inline constexpr std::tuple parameter_fields{
           "No further sub-step once every |A − A⁰| / A⁰ is at or below it."},
     Field{"tolerance", &Parameters::tolerance, Bounds{.least = 0.0, .greatest = 1.0, .greatest_excluded = true}, "",
           "CG stops at this residual over the right-hand side; in small steps at three times it."},
-    Field{"max_iterations", &Parameters::max_iterations, at_least_one, "", "CG iterations a solve, at most."},
+    Field{"max_iterations", &Parameters::max_iterations, iteration_count, "", "CG iterations a solve, at most."},
     Field{
         "adaptive_threshold", &Parameters::adaptive_threshold, any_whole, "",
         "0: α stays as given. Otherwise a solve with more CG iterations than this doubles α − 1 for the next, and one "

@@ -123,10 +123,10 @@ typedef struct apsl_options {
 typedef struct apsl_parameters {
     float time_step;            /**< s, > 0 */
     float regularization;       /**< alpha >= 1, multiplies diag(G) */
-    int32_t sub_steps;          /**< >= 0 */
+    int32_t sub_steps;          /**< from 0 to 10000 */
     float target_area_change;   /**< |A - A0| / A0 >= 0 at which no further sub-step is done */
     float tolerance;            /**< in [0, 1), of a solve's residual */
-    int32_t max_iterations;     /**< >= 1, of a solve */
+    int32_t max_iterations;     /**< from 1 to 10000, of a solve */
     int32_t adaptive_threshold; /**< 0: alpha stays as given; else more iterations than this raise it */
     float first_regularization; /**< 0: alpha is the same in every sub-step; else > 1, that of the first */
     int32_t stepping;           /**< apsl_stepping */

@@ -29,7 +29,7 @@ APSL_STRUCTS_BEGIN
 struct Parameters {
     float time_step = 1.0f / 60.0f;  ///< s, > 0; Δt of Algorithm 1
     float regularization = 1.05f;    ///< α ≥ 1, multiplies diag(G) (Section 4); ignored where a per-triangle α is given
-    std::int32_t sub_steps = 30;     ///< ≥ 0; the fixed count of Algorithm 1
+    std::int32_t sub_steps = 30;     ///< from 0 to 10000; the fixed count of Algorithm 1
     /// ≥ `sub_steps`; 0: automatic. With Options::limits_stretch the device takes as many small steps, from `sub_steps`
     /// to this, as the stretch that the whole step would make and the tension of the calls before ask for
     /// (docs/formulation.md, Stretch ceiling); all of them are queued. More than `sub_steps` need sub_steps ≥ 2,
@@ -40,7 +40,7 @@ struct Parameters {
     /// the first and before the last.
     float target_area_change = 0.0f;
     float tolerance = 0.1f;            ///< in [0, 1): CG stops at ‖r‖ ≤ tolerance · ‖b‖, Euclidean norms of areas in m²
-    std::int32_t max_iterations = 50;  ///< ≥ 1, CG iterations a solve
+    std::int32_t max_iterations = 50;  ///< from 1 to 10000, CG iterations a solve
     /// 0: α stays as given. Otherwise a solve that fails or takes more iterations than this raises α for the next one
     /// (α − 1 doubles, up to 1024-fold), and one that takes at most half of it lowers it again towards the given value
     /// (Section 4).

@@ -85,6 +85,7 @@ TEST_CASE("enqueue refuses parameters out of range, and queues nothing", "[embed
     check_invalid("tolerance is 1", parameters({.tolerance = 1.0f}));
     check_invalid("tolerance is nan", parameters({.tolerance = nan}));
     check_invalid("max_iterations is 0", parameters({.max_iterations = 0}));
+    check_invalid("max_iterations is 10001", parameters({.max_iterations = 10001}));
 
     const std::vector<Parameters> two(2);
     const std::vector<Parameters> none;
@@ -92,6 +93,37 @@ TEST_CASE("enqueue refuses parameters out of range, and queues nothing", "[embed
         check_invalid(std::to_string(wrong_count.size()) + " parameters given for 1 cloths",
                       [&] { clReleaseEvent(made.enqueue(queue.get(), buffers.views(), wrong_count)); });
     CHECK(same_bytes(buffers.read_velocities(), CallerBuffers({&cloth(), 1}, {}).read_velocities()));
+}
+
+TEST_CASE("enqueue refuses a call of more launches than it may queue, and queues nothing", "[embed]") {
+    const CallerBuffers buffers({&cloth(), 1}, {});
+    const Owned<cl_command_queue> queue = in_order_queue();
+    Buffers views = buffers.views();
+    // What is not refused for its launches is refused for this one.
+    views.rest_areas = {};
+    const auto refused = [&](const std::string& what, const Options& options, const Parameters& parameters) {
+        StrainLimiter made = limiter(options);
+        check_invalid(what, [&] { clReleaseEvent(made.enqueue(queue.get(), views, parameters)); });
+    };
+    const std::string rest = " sub-steps, expected at most 1000000; lower sub_steps";
+    const std::string no_areas = "buffers.rest_areas is null";
+    // Nothing bounds a solve: an iteration of CG is two launches.
+    const Options many{.execution = Execution::many_groups};
+    const Parameters endless{.regularization = 1.0f, .sub_steps = 51, .max_iterations = 10000};
+    refused("would queue 1020000 launches for solves and bending in 51" + rest, many, endless);
+    Parameters as_many_as_may_be = endless;
+    as_many_as_may_be.sub_steps = 50;
+    refused(no_areas, many, as_many_as_may_be);
+    // One launch for all of it.
+    refused(no_areas, {.execution = Execution::one_group}, endless);
+    // A product is a launch, and sub-steps are twice as many where stretch asks for them.
+    const Options stretch{.limits_stretch = true};
+    Parameters ceiling = endless;
+    ceiling.stretch_ceiling = 1.1f;
+    refused("would queue 1020000 launches for solves and bending in 102" + rest, stretch, ceiling);
+    ceiling.sub_steps = 50;
+    refused(no_areas, stretch, ceiling);
+    refused(no_areas, stretch, {.sub_steps = 10000, .stretch_ceiling = 1.1f});
 }
 
 TEST_CASE("enqueue refuses velocities that share floats with the positions, and takes those that alternate",

@@ -39,7 +39,10 @@ TEST_CASE("each parameter out of its range is named, with its value and its rang
     CHECK(message_of(&Parameters::target_area_change, -0.25f) ==
           "target_area_change is -0.25, expected a finite number >= 0");
     CHECK(message_of(&Parameters::tolerance, 1.0f) == "tolerance is 1, expected a finite number >= 0 and < 1");
-    CHECK(message_of(&Parameters::max_iterations, 0) == "max_iterations is 0, expected a whole number >= 1");
+    CHECK(message_of(&Parameters::max_iterations, 0) ==
+          "max_iterations is 0, expected a whole number >= 1 and <= 10000");
+    CHECK(message_of(&Parameters::max_iterations, 10001) ==
+          "max_iterations is 10001, expected a whole number >= 1 and <= 10000");
     CHECK(message_of(&Parameters::first_regularization, 1.0f) ==
           "first_regularization is 1, expected 0 (the same in every sub-step) or a finite number > 1");
 }
@@ -90,5 +93,6 @@ TEST_CASE("the ends of the ranges are legal") {
     CHECK(message_of(&Parameters::sub_steps, 0) == "no error");
     CHECK(message_of(&Parameters::tolerance, 0.0f) == "no error");
     CHECK(message_of(&Parameters::max_iterations, 1) == "no error");
+    CHECK(message_of(&Parameters::max_iterations, 10000) == "no error");
     CHECK(message_of(&Parameters::time_step, std::numeric_limits<float>::min()) == "no error");
 }

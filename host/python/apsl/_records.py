@@ -50,11 +50,11 @@ class Parameters(TypedDict, total=False):
 
     time_step: float  # s, > 0
     regularization: Union[float, npt.ArrayLike, DeviceArray]  # α ≥ 1; an array [T] with regularization_per_triangle
-    sub_steps: int  # ≥ 0
+    sub_steps: int  # from 0 to 10000
     most_sub_steps: int  # ≥ sub_steps: more are taken where stretch asks for them; 0: automatic
     target_area_change: float  # ≥ 0, no further sub-step once every triangle is at or below it
     tolerance: float  # in [0, 1), of a solve's residual
-    max_iterations: int  # ≥ 1, CG iterations of a solve
+    max_iterations: int  # from 1 to 10000, CG iterations of a solve
     adaptive_threshold: int  # 0: α stays as given; else more iterations than this raise it
     first_regularization: float  # 0: one α for all sub-steps; else > 1, that of the first
     # 0, or ≥ 1.01: no principal stretch above this multiple of the rest shape; an array [T] with

@@ -33,7 +33,7 @@ Parameters illegal_parameters(Random& random) {
             p.tolerance = random.one_of({-1e-9f, 1.0f, infinity, not_a_number});
             break;
         case 5:
-            p.max_iterations = random.one_of({0, -1});
+            p.max_iterations = random.one_of({0, -1, 10001});
             break;
         case 6:
             p.adaptive_threshold = -1;
