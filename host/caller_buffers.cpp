@@ -5,81 +5,74 @@
 #include "invalid.hpp"
 #include "kernels/constants.h"
 
-#include <cstdint>
-#include <cstdlib>
 #include <string>
+#include <vector>
 
 namespace apsl::host {
 namespace {
 
-// Floats from the first number of the first vertex to the last of the last.
-std::size_t vector_extent(std::size_t vertices, std::uint32_t stride, std::uint32_t component_stride) {
-    return (vertices - 1) * stride + std::size_t{2} * component_stride + 1;
-}
-
-// Vertices of both may alternate in one buffer, but no float belongs to both. Looked at where the strides are alike;
-// two sub-buffers of one buffer are taken to be apart.
-void check_velocities_apart(const Buffers& buffers, const Options& options, std::size_t vertices) {
-    if (buffers.velocities.buffer != buffers.positions.buffer || options.velocity_stride != options.position_stride ||
-        options.velocity_component_stride != options.position_component_stride)
-        return;
-    const auto floats = [](const BufferView& view) { return static_cast<std::int64_t>(view.offset / sizeof(float)); };
-    const std::int64_t apart = floats(buffers.velocities) - floats(buffers.positions);
-    const std::int64_t stride = options.position_stride, component_stride = options.position_component_stride;
-    for (std::int64_t components = -2; components <= 2; ++components) {
-        const std::int64_t rest = apart - components * component_stride;
-        if (rest % stride == 0 && std::abs(rest / stride) < static_cast<std::int64_t>(vertices))
-            invalid("buffers.velocities overlaps buffers.positions: both begin in one buffer, " +
-                    std::to_string(apart) + " floats apart");
-    }
+FloatsInUse positions_in_use(const char* name, const BufferView& view, const Options& options,
+                             const CallerCounts& counts, bool written) {
+    return {name, view, written, counts.vertices, options.position_stride, 3, options.position_component_stride};
 }
 
 }  // namespace
 
-std::size_t position_floats(const Options& options, const CallerCounts& counts) {
-    return vector_extent(counts.vertices, options.position_stride, options.position_component_stride);
-}
-
-void check_buffers(const Buffers& buffers, const Options& options, const CallerCounts& counts, cl_context context) {
-    const auto check = [&](const BufferView& view, std::size_t floats, Access access, const char* name) {
-        check_view(view, floats, access, context, name);
+void check_buffers(const Buffers& buffers, const Options& options, const CallerCounts& counts, cl_context context,
+                   const std::optional<FloatsInUse>& scratch) {
+    std::vector<FloatsInUse> in_use;
+    if (scratch) in_use.push_back(*scratch);
+    const auto use = [&](const FloatsInUse& floats) {
+        check_view(floats.view, floats.extent(), floats.written ? Access::read_and_write : Access::read, context,
+                   floats.name);
+        in_use.push_back(floats);
     };
-    check(buffers.positions, position_floats(options, counts),
-          options.positions_only || options.integrates ? Access::read_and_write : Access::read, "buffers.positions");
-    if (!options.positions_only) {
-        check(buffers.velocities,
-              vector_extent(counts.vertices, options.velocity_stride, options.velocity_component_stride),
-              Access::read_and_write, "buffers.velocities");
-        check_velocities_apart(buffers, options, counts.vertices);
-    } else if (buffers.velocities.buffer) {
+    use(positions_in_use("buffers.positions", buffers.positions, options, counts,
+                         options.positions_only || options.integrates));
+    if (!options.positions_only)
+        use({"buffers.velocities", buffers.velocities, true, counts.vertices, options.velocity_stride, 3,
+             options.velocity_component_stride});
+    else if (buffers.velocities.buffer)
         invalid("buffers.velocities is given, but Options::positions_only is on");
-    }
-    check(buffers.inverse_masses, (counts.vertices - 1) * options.inverse_mass_stride + 1, Access::read,
-          "buffers.inverse_masses");
-    check(buffers.rest_areas, counts.triangles, Access::read, "buffers.rest_areas");
-    const auto check_optional = [&](bool on, const BufferView& view, std::size_t floats, const char* name,
-                                    const char* option) {
-        const std::string full_name = std::string("buffers.") + name;
+    use({"buffers.inverse_masses", buffers.inverse_masses, false, counts.vertices, options.inverse_mass_stride});
+    use({"buffers.rest_areas", buffers.rest_areas, false, counts.triangles});
+    const auto use_optional = [&](bool on, const FloatsInUse& floats, const char* option) {
         if (on)
-            check(view, floats, Access::read, full_name.c_str());
-        else if (view.buffer)
-            invalid(full_name + " is given, but Options::" + option + " is off");
+            use(floats);
+        else if (floats.view.buffer)
+            invalid(std::string(floats.name) + " is given, but Options::" + option + " is off");
     };
-    check_optional(options.regularization_per_triangle, buffers.regularization, counts.triangles, "regularization",
-                   "regularization_per_triangle");
-    check_optional(options.limits_stretch, buffers.rest_shapes, 4 * counts.triangles, "rest_shapes", "limits_stretch");
+    use_optional(options.regularization_per_triangle,
+                 {"buffers.regularization", buffers.regularization, false, counts.triangles},
+                 "regularization_per_triangle");
+    use_optional(options.limits_stretch, {"buffers.rest_shapes", buffers.rest_shapes, false, 4 * counts.triangles},
+                 "limits_stretch");
     // A mesh without hinges needs no buffer.
     if (!options.bends || counts.hinges > 0)
-        check_optional(options.bends, buffers.rest_hinges, 2 * counts.hinges, "rest_hinges", "bends");
-    check_optional(options.stretch_ceiling_per_triangle, buffers.stretch_ceilings, counts.triangles, "stretch_ceilings",
-                   "stretch_ceiling_per_triangle");
-    check_optional(options.keeps_contacts, buffers.contacts, APSLK_CONTACT_SIZE * counts.vertices, "contacts",
-                   "keeps_contacts");
-    check_optional(options.acceleration_per_vertex, buffers.accelerations, position_floats(options, counts),
-                   "accelerations", "acceleration_per_vertex");
+        use_optional(options.bends, {"buffers.rest_hinges", buffers.rest_hinges, false, 2 * counts.hinges}, "bends");
+    use_optional(options.stretch_ceiling_per_triangle,
+                 {"buffers.stretch_ceilings", buffers.stretch_ceilings, false, counts.triangles},
+                 "stretch_ceiling_per_triangle");
+    use_optional(options.keeps_contacts,
+                 {"buffers.contacts", buffers.contacts, false, APSLK_CONTACT_SIZE * counts.vertices}, "keeps_contacts");
+    use_optional(options.acceleration_per_vertex,
+                 positions_in_use("buffers.accelerations", buffers.accelerations, options, counts, false),
+                 "acceleration_per_vertex");
     const std::size_t tethers = std::size_t{options.tethers_per_vertex} * counts.vertices;
-    check_optional(tethers > 0, buffers.tether_anchors, tethers, "tether_anchors", "tethers_per_vertex");
-    check_optional(tethers > 0, buffers.tether_lengths, tethers, "tether_lengths", "tethers_per_vertex");
+    use_optional(tethers > 0, {"buffers.tether_anchors", buffers.tether_anchors, false, tethers}, "tethers_per_vertex");
+    use_optional(tethers > 0, {"buffers.tether_lengths", buffers.tether_lengths, false, tethers}, "tethers_per_vertex");
+    check_apart(in_use);
+}
+
+void check_rest_buffers(const BufferView& rest_positions, const FloatsInUse& target, const Options& options,
+                        const CallerCounts& counts, cl_context context, const std::optional<FloatsInUse>& scratch) {
+    const FloatsInUse positions = positions_in_use("rest_positions", rest_positions, options, counts, false);
+    check_view(positions.view, positions.extent(), Access::read, context, positions.name);
+    check_view(target.view, target.extent(), Access::write, context, target.name);
+    std::vector<FloatsInUse> in_use;
+    if (scratch) in_use.push_back(*scratch);
+    in_use.insert(in_use.end(), {positions, target});
+    check_apart(in_use);
 }
 
 const BufferView& corrected(const Buffers& buffers) {

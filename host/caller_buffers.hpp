@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "overlaps.hpp"
+
 #include <apsl/strain_limiter.hpp>
 
 #include <cstddef>
+#include <optional>
 
 namespace apsl::host {
 
@@ -14,11 +17,14 @@ struct CallerCounts {
     std::size_t hinges = 0;     ///< 0 where nothing bends
 };
 
-/// Floats from the first of the caller's positions to the last.
-std::size_t position_floats(const Options& options, const CallerCounts& counts);
+/// Throws Error(invalid_argument) naming the first buffer that a call cannot use, or two that overlap. `scratch`: the
+/// limiter's own, where that is the caller's memory.
+void check_buffers(const Buffers& buffers, const Options& options, const CallerCounts& counts, cl_context context,
+                   const std::optional<FloatsInUse>& scratch);
 
-/// Throws Error(invalid_argument) naming the first buffer that a call cannot use.
-void check_buffers(const Buffers& buffers, const Options& options, const CallerCounts& counts, cl_context context);
+/// The same of what `target` is computed into from rest positions.
+void check_rest_buffers(const BufferView& rest_positions, const FloatsInUse& target, const Options& options,
+                        const CallerCounts& counts, cl_context context, const std::optional<FloatsInUse>& scratch);
 
 /// What a call corrects: velocities, or the positions where there are none.
 const BufferView& corrected(const Buffers& buffers);

@@ -32,6 +32,11 @@ void check_buffer(cl_mem buffer, cl_context context, const char* name) {
         invalid(name, "is of another context, expected the limiter's");
 }
 
+void check_offset(const BufferView& view, const char* name) {
+    if (view.offset % sizeof(float) != 0)
+        invalid(name, "has offset " + std::to_string(view.offset) + ", expected a multiple of 4 bytes");
+}
+
 std::string device_name(cl_device_id device) {
     std::size_t size = 0;
     if (clGetDeviceInfo(device, CL_DEVICE_NAME, 0, nullptr, &size) != CL_SUCCESS) return "unknown";
@@ -63,8 +68,7 @@ void check_view(const BufferView& view, std::size_t floats, Access access, cl_co
         invalid(name, "is CL_MEM_READ_ONLY, expected a buffer that kernels may write");
     if (access != Access::write && (flags & CL_MEM_WRITE_ONLY))
         invalid(name, "is CL_MEM_WRITE_ONLY, expected a buffer that kernels may read");
-    if (view.offset % sizeof(float) != 0)
-        invalid(name, "has offset " + std::to_string(view.offset) + ", expected a multiple of 4 bytes");
+    check_offset(view, name);
     const auto size = buffer_info<std::size_t>(view.buffer, CL_MEM_SIZE);
     const std::size_t needed = floats * sizeof(float);
     // Subtracted rather than added: an offset near the end of the range must not wrap round.
@@ -84,6 +88,7 @@ void check_scratch(const BufferView& scratch, cl_context context) {
     // The adjacency is uploaded there, and the statistics are read from there.
     if (flags & (CL_MEM_HOST_READ_ONLY | CL_MEM_HOST_WRITE_ONLY | CL_MEM_HOST_NO_ACCESS))
         invalid(name, "has a CL_MEM_HOST_ flag, expected memory that the host may read and write");
+    check_offset(scratch, name);
 }
 
 void check_queue(cl_command_queue queue, std::span<const cl_event> wait_list, cl_context context, cl_device_id device) {

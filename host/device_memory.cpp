@@ -48,6 +48,12 @@ std::size_t DeviceMemory::next_origin() const {
     return round_up(scratch_.offset, alignment_) + aligned_;
 }
 
+std::optional<FloatsInUse> DeviceMemory::scratch_in_use() const {
+    if (!scratch_.buffer) return std::nullopt;
+    const BufferView begin{scratch_.buffer, round_up(scratch_.offset, alignment_)};
+    return FloatsInUse{"the limiter's scratch memory", begin, true, aligned_ / sizeof(float)};
+}
+
 void DeviceMemory::keep_clear_of(const DeviceMemory& other) {
     if (other.scratch_.buffer != scratch_.buffer) return;
     taken_begin_ = round_up(other.scratch_.offset, alignment_);

@@ -3,10 +3,12 @@
 
 #include "device_facts.hpp"
 #include "handles.hpp"
+#include "overlaps.hpp"
 
 #include <apsl/strain_limiter.hpp>
 
 #include <cstddef>
+#include <optional>
 
 namespace apsl::host {
 
@@ -26,6 +28,8 @@ public:
     BufferHandle allocate(std::size_t size, const void* contents);
     /// After the last allocation: from then on every queue sees the contents. Waits.
     void finish_uploads();
+    /// What all buffers so far take of the caller's place, which every call may write; none where they are allocated.
+    std::optional<FloatsInUse> scratch_in_use() const;
     /// Of all buffers so far, without gaps.
     std::size_t bytes() const { return bytes_; }
     /// Likewise, cut from a place at any offset.

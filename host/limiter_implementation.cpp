@@ -272,7 +272,7 @@ cl_event StrainLimiter::Implementation::enqueue(cl_command_queue queue, const Bu
     }
     if (!one_group()) check_launches(budget);
     check_queue(queue, wait_list, context, device);
-    check_buffers(buffers, options, caller_counts, context);
+    check_buffers(buffers, options, caller_counts, context, memory.scratch_in_use());
 
     CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
     queue_parameters(commands, resolved);
@@ -290,8 +290,8 @@ cl_event StrainLimiter::Implementation::enqueue_rest(cl_command_queue queue, con
                                                      std::span<const cl_event> wait_list,
                                                      const SetArguments& set_arguments) {
     check_queue(queue, wait_list, context, device);
-    check_view(rest_positions, position_floats(options, caller_counts), Access::read, context, "rest_positions");
-    check_view(target, floats, Access::write, context, name);
+    check_rest_buffers(rest_positions, {name, target, true, floats}, options, caller_counts, context,
+                       memory.scratch_in_use());
     CommandSequence commands(queue, wait_list, profiling ? &profile : nullptr);
     launch(commands, set_arguments());
     return commands.end();

@@ -146,7 +146,7 @@ typedef struct apsl_buffer_view {
     size_t offset; /**< bytes, a multiple of 4 */
 } apsl_buffer_view;
 
-/** apsl::Buffers; several cloths follow one another. */
+/** apsl::Buffers; several cloths follow one another. What a call writes shares no float with anything else. */
 typedef struct apsl_buffers {
     apsl_buffer_view positions;      /**< m, [V] with position_stride; the start of the step; only read. With
                                         positions_only the end of the step, in and out */

@@ -30,7 +30,7 @@ struct BufferView {
 };
 
 /// 32-bit floats in the caller's buffers. With several cloths their vertices and triangles follow one another in the
-/// order the cloths were given in.
+/// order the cloths were given in. What a call writes shares no float with anything else that it uses.
 struct Buffers {
     /// m, 3 floats every Options::position_stride, [V]; x̃, the start of the step; only read. With
     /// Options::integrates the start of the step in, its end out; with Options::positions_only its end, in and out.

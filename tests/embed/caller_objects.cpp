@@ -171,6 +171,14 @@ TEST_CASE("scratch memory that cannot be cut and filled is refused, by the const
         check_invalid(what, [&] { StrainLimiter(device().context, device().id, cloth().topology, {}, {}, view); });
         check_invalid(what, [&] { made.rebuild(cloth().topology, view); });
     }
+    const auto usable = scratch(CL_MEM_READ_WRITE);
+    for (const std::size_t offset : {1, 2, 1026}) {
+        const std::string what = "scratch has offset " + std::to_string(offset) + ", expected a multiple of 4 bytes";
+        const BufferView view{usable.get(), offset};
+        check_invalid(what, [&] { StrainLimiter(device().context, device().id, cloth().topology, {}, {}, view); });
+        check_invalid(what, [&] { made.rebuild(cloth().topology, view); });
+    }
+    CHECK_NOTHROW(StrainLimiter(device().context, device().id, cloth().topology, {}, {}, {usable.get(), 4}));
     const Parameters parameters;
     CHECK(filter(made, CallerBuffers({&cloth(), 1}, {}), {&parameters, 1})[0].status == Status::ok);
 }
