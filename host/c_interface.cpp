@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "caller_objects.hpp"
+#include "mesh_size.hpp"
 
 #include <apsl/apsl.h>
 #include <apsl/strain_limiter.hpp>
@@ -246,7 +247,8 @@ apsl_result apsl_topology_create(const uint32_t* triangles, size_t triangle_coun
     return guarded([&] {
         require(topology, "topology");
         *topology = nullptr;
-        if (triangle_count > 0) require(triangles, "triangles");
+        apsl::check_mesh_size(triangle_count, vertex_count);
+        require(triangles, "triangles");
         std::vector<apsl::Triangle> list(triangle_count);
         for (size_t a = 0; a < triangle_count; ++a)
             list[a] = {triangles[3 * a], triangles[3 * a + 1], triangles[3 * a + 2]};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "counting_sort.hpp"
+#include "mesh_size.hpp"
 
 #include <apsl/error.hpp>
 #include <apsl/topology.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -13,25 +13,13 @@
 namespace apsl {
 namespace {
 
-// Corner numbers and the offsets into lists of them are 32-bit.
-constexpr std::size_t greatest_triangle_count = std::numeric_limits<std::uint32_t>::max() / 3;
-constexpr std::size_t greatest_vertex_count = std::numeric_limits<std::uint32_t>::max();
-
 std::string describe(std::size_t a, const Triangle& triangle) {
     return "triangle " + std::to_string(a) + " (" + std::to_string(triangle[0]) + ", " + std::to_string(triangle[1]) +
            ", " + std::to_string(triangle[2]) + ")";
 }
 
 void check_mesh(std::span<const Triangle> triangles, std::size_t vertex_count) {
-    if (triangles.empty()) throw Error(ErrorCode::invalid_mesh, "the mesh has no triangles, expected at least one");
-    if (triangles.size() > greatest_triangle_count)
-        throw Error(ErrorCode::invalid_mesh, "the mesh has " + std::to_string(triangles.size()) +
-                                                 " triangles, expected at most " +
-                                                 std::to_string(greatest_triangle_count));
-    if (vertex_count > greatest_vertex_count)
-        throw Error(ErrorCode::invalid_mesh, "the mesh has " + std::to_string(vertex_count) +
-                                                 " vertices, expected at most " +
-                                                 std::to_string(greatest_vertex_count));
+    check_mesh_size(triangles.size(), vertex_count);
     for (std::size_t a = 0; a < triangles.size(); ++a) {
         const Triangle& t = triangles[a];
         for (const std::uint32_t v : t)

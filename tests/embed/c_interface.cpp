@@ -75,8 +75,15 @@ TEST_CASE("the C interface: every error is a result and one line, nothing is thr
     last_error_says("triangles is null");
     CHECK(apsl_topology_create(bad, 1, 3, nullptr) == APSL_ERROR_INVALID_ARGUMENT);
     CHECK(apsl_topology_create(nullptr, 0, 3, &topology) == APSL_ERROR_INVALID_MESH);
-    CHECK(apsl_topology_create(bad, SIZE_MAX, 3, &topology) == APSL_ERROR_OUT_OF_MEMORY);
-    CHECK(topology == nullptr);
+    last_error_says("the mesh has no triangles");
+    // Corners are numbered in 32 bits: refused before one is read.
+    for (const std::size_t count : {std::size_t{1431655766}, std::size_t{1} << 32, SIZE_MAX}) {
+        CHECK(apsl_topology_create(bad, count, 3, &topology) == APSL_ERROR_INVALID_MESH);
+        last_error_says("the mesh has " + std::to_string(count) + " triangles, expected at most 1431655765");
+        CHECK(topology == nullptr);
+    }
+    CHECK(apsl_topology_create(bad, 1, std::size_t{1} << 32, &topology) == APSL_ERROR_INVALID_MESH);
+    last_error_says("the mesh has 4294967296 vertices, expected at most 4294967295");
 
     const CTopology good(cloth);
     const apsl_topology* const cloths[] = {good.topology, nullptr};
