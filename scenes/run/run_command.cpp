@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/commands.hpp"
 #include "run/flat_cloth.hpp"
+#include "run/folder_lock.hpp"
 #include "run/frame_output.hpp"
 #include "run/input_error.hpp"
 #include "run/input_files.hpp"
@@ -128,7 +129,11 @@ int run_command(const RunOptions& options) {
     if (options.out && options.report) check_report_apart(*options.report, *options.out);
     std::optional<OpenClDevice> device;
     if (scene.strain_limiting && options.backend == Backend::opencl) device = choose_opencl_device(options.device);
-    if (options.out) make_writable_folder(*options.out);
+    std::optional<FolderLock> lock;
+    if (options.out) {
+        make_writable_folder(*options.out);
+        lock.emplace(*options.out);
+    }
     if (options.report) check_file_place(*options.report);
 
     FilterStage filter = make_filter_stage(scene, cloth.state, options.backend, device, options.profile);

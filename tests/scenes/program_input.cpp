@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Wrong input of every kind: exit code 2, and one line that says what and where.
+#include "run/folder_lock.hpp"
 #include "scenes/program_run.hpp"
 #include "scenes/sample_files.hpp"
 
@@ -120,6 +121,14 @@ TEST_CASE("places that cannot be written to are refused in one line, before anyt
     check_refused(curtain + " --report /dev/null", "/dev/null: exists and is no plain file");
     check_refused(curtain + " --report " + (folder.path() / "none/report.json").string(), "no such folder");
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+}
+
+TEST_CASE("a run into a folder that another run writes into is refused in one line") {
+    const TemporaryFolder folder;
+    const apsl::scenes::FolderLock of_another_run(folder.path());
+    check_refused("run --frames 1 " + scene_path("curtain_unfiltered.json") + " --out " + folder.path().string(),
+                  folder.path().string() + ": another run writes there, expected a folder of its own for each");
+    CHECK(std::filesystem::is_empty(folder.path()));
 }
 
 TEST_CASE("an input is never overwritten, whatever names lead to it: refused in one line that names both") {

@@ -225,6 +225,19 @@ TEST_CASE("an interrupted run exits with what shells have for its signal") {
     CHECK_THAT(run.errors, Catch::Contains("interrupted after "));
 }
 
+TEST_CASE("a run into the folder of a run that is at work is refused, until that has ended") {
+    const TemporaryFolder folder;
+    const std::string out = (folder.path() / "out").string();
+    const std::string run = "run " + scene_path("curtain_unfiltered.json") + " --out " + out + " --frames ";
+    const ProgramRun second = run_apsl(run + "1000000 2>&1 & until [ -e " + out + "/cloth.obj ]; do sleep 0.1; done; " +
+                                           APSL_PROGRAM " " + run + "1; code=$?; kill -TERM $!; wait $!; exit $code)",
+                                       "(");
+    CHECK(second.exit_code == 2);
+    CHECK(second.errors == "error: " + out + ": another run writes there, expected a folder of its own for each\n");
+    CHECK_THAT(second.output, Catch::Contains("interrupted after "));
+    CHECK(run_apsl(run + "1").exit_code == 0);
+}
+
 TEST_CASE("output that cannot be written is an error, whatever the command") {
     const std::string curtain = scene_path("curtain_unfiltered.json");
     for (const std::string& arguments : {"run " + curtain + " --frames 1", "validate " + curtain,
