@@ -216,13 +216,22 @@ TEST_CASE("an interrupted run says so and leaves nothing that names itself whole
 }
 
 TEST_CASE("an interrupted run exits with what shells have for its signal") {
-    const auto [signal, code] = GENERATE(table<std::string, int>({{"INT", 130}, {"TERM", 143}}));
+    const auto [signal, code] = GENERATE(table<std::string, int>({{"INT", 130}, {"TERM", 143}, {"HUP", 129}}));
     CAPTURE(signal);
     // With its status preserved `timeout` passes on the program's own exit code.
-    const ProgramRun run = run_apsl("run " + scene_path("curtain_unfiltered.json") + " --frames 1000000",
-                                    "timeout --foreground --preserve-status --signal=" + signal + " 2");
+    // These tests may run under nohup.
+    const ProgramRun run =
+        run_apsl("run " + scene_path("curtain_unfiltered.json") + " --frames 1000000",
+                 "env --default-signal=HUP timeout --foreground --preserve-status --signal=" + signal + " 2");
     CHECK(run.exit_code == code);
     CHECK_THAT(run.errors, Catch::Contains("interrupted after "));
+}
+
+TEST_CASE("a run under nohup goes on when its terminal is closed") {
+    const ProgramRun run = run_apsl("run " + scene_path("curtain_unfiltered.json") + " --frames 1000000",
+                                    "timeout --foreground --preserve-status --signal=HUP --kill-after=1 2 nohup");
+    CHECK(run.exit_code == 137);
+    CHECK_THAT(run.errors, !Catch::Contains("interrupted after "));
 }
 
 TEST_CASE("a run into the folder of a run that is at work is refused, until that has ended") {
