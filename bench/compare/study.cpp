@@ -42,7 +42,7 @@ SceneCase parse_case(const SceneValue& value, const std::filesystem::path& folde
         }
     }
     object.refuse_other_keys();
-    for (const std::string& assignment : overrides) scenes::override_scene(document, assignment);
+    scenes::override_scene(document, overrides);
     return as_case(name, file, std::move(document));
 }
 

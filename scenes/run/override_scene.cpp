@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -62,7 +63,7 @@ void replace_other_kinds(Json& document, const std::vector<std::string>& path) {
 }  // namespace
 
 template <class Json>
-void override_scene(Json& document, const std::string& assignment) {
+bool override_scene(Json& document, const std::string& assignment) {
     const std::size_t equals = assignment.find('=');
     const std::vector<std::string> path = split_path(assignment.substr(0, equals));
     if (equals == std::string::npos || std::find(path.begin(), path.end(), "") != path.end())
@@ -79,11 +80,18 @@ void override_scene(Json& document, const std::string& assignment) {
     Json* place = &document;
     for (std::size_t k = 0; k < path.size(); ++k) {
         const bool last = k + 1 == path.size();
-        if (place->is_null()) *place = Json::object();
+        if (place->is_null()) {
+            if (k > 0 && as_index(path[k]))
+                throw InputError("--set " + assignment + ": there is no \"" + path[k - 1] +
+                                 "\" in the scene, expected all of it, " + path[k - 1] + "=[...]");
+            if (value.is_null()) return false;
+            *place = Json::object();
+        }
         if (place->is_object()) {
+            if (value.is_null() && !place->contains(path[k])) return false;
             if (last && value.is_null()) {
                 place->erase(path[k]);
-                return;
+                return true;
             }
             place = &(*place)[path[k]];
         } else if (const auto index = as_index(path[k]); place->is_array() && index && *index <= place->size()) {
@@ -97,9 +105,20 @@ void override_scene(Json& document, const std::string& assignment) {
     *place = std::move(value);
     if (path == std::vector<std::string>{"mesh", "file"} && place->is_string())
         *place = std::filesystem::absolute(place->template get<std::string>()).lexically_normal().string();
+    return true;
 }
 
-template void override_scene(nlohmann::json&, const std::string&);
-template void override_scene(nlohmann::ordered_json&, const std::string&);
+template <class Json>
+void override_scene(Json& document, std::span<const std::string> assignments) {
+    for (const std::string& assignment : assignments)
+        if (!override_scene(document, assignment))
+            std::fprintf(stderr, "warning: --set %s: there is no such key in the scene to take out\n",
+                         assignment.c_str());
+}
+
+template bool override_scene(nlohmann::json&, const std::string&);
+template bool override_scene(nlohmann::ordered_json&, const std::string&);
+template void override_scene(nlohmann::json&, std::span<const std::string>);
+template void override_scene(nlohmann::ordered_json&, std::span<const std::string>);
 
 }  // namespace apsl::scenes

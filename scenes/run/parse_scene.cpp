@@ -310,7 +310,7 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
 nlohmann::ordered_json read_scene_document(const std::filesystem::path& file, std::span<const std::string> overrides) {
     const std::string text = read_file(file, "scene");
     nlohmann::ordered_json document = parse_json(text, file.string());
-    for (const std::string& assignment : overrides) override_scene(document, assignment);
+    override_scene(document, overrides);
     return document;
 }
 

@@ -38,6 +38,19 @@ TEST_CASE("set: changes, adds and takes out values") {
     CHECK(changed(before, assignment) == nlohmann::json::parse(after));
 }
 
+TEST_CASE("set: null takes out what is there, and says where nothing is") {
+    nlohmann::json document = nlohmann::json::parse(R"({"a": {"b": 1}, "list": [{}]})");
+    const nlohmann::json before = document;
+    for (const char* absent : {"b=null", "a.c=null", "a.c.d=null", "c.d.e=null", "list[0].a=null"}) {
+        CAPTURE(absent);
+        CHECK_FALSE(override_scene(document, absent));
+        CHECK(document == before);
+    }
+    CHECK(override_scene(document, "a.c=1"));
+    CHECK(override_scene(document, "a.b=null"));
+    CHECK(document == nlohmann::json::parse(R"({"a": {"c": 1}, "list": [{}]})"));
+}
+
 TEST_CASE("set: of one kind of mesh or integrator puts it in place of the others") {
     CHECK(changed(R"({"mesh": {"grid": {}}})", "mesh.file=/tmp/x.obj") ==
           nlohmann::json::parse(R"({"mesh": {"file": "/tmp/x.obj"}})"));
@@ -68,6 +81,10 @@ TEST_CASE("set: that leads nowhere says where it stopped") {
         {"\xff=1", "--set \xff=1: expected text in UTF-8"},
         {"x" + std::string(100000, '.') + "=1", "--set x"},
         {"list.x=1", "--set list.x=1: there is no \"x\" in [1]"},
+        {"gravity[1]=-1",
+         "--set gravity[1]=-1: there is no \"gravity\" in the scene, expected all of it, gravity=[...]"},
+        {"mesh.grid.size[0]=2",
+         "--set mesh.grid.size[0]=2: there is no \"size\" in the scene, expected all of it, size=[...]"},
     }));
     nlohmann::json document = nlohmann::json::parse(R"({"a": 3, "list": [1]})");
     CHECK_THAT(input_error_of([&, given = assignment] { override_scene(document, given); }),

@@ -38,8 +38,17 @@ TEST_CASE("wrong usage is refused in one line") {
     check_refused("run " + scene_path("curtain.json") + " --set frames", "--set frames: expected path=value");
     check_refused("run " + scene_path("curtain.json") + " --set strain_limiting.alpha=1.1",
                   "strain_limiting.alpha: unknown key");
+    check_refused("validate " + scene_path("curtain.json") + " --set gravity[1]=-1",
+                  "--set gravity[1]=-1: there is no \"gravity\" in the scene, expected all of it");
     check_refused("validate " + scene_path("curtain.json") + " --set pins[0]=null",
                   "pins[0]: expected an object, got null");
+}
+
+TEST_CASE("a key to take out that is not there is warned of") {
+    const ProgramRun run = run_apsl("validate " + scene_path("curtain_unfiltered.json") + " --set strain_limitng=null");
+    CHECK(run.exit_code == 0);
+    CHECK(run.errors == "warning: --set strain_limitng=null: there is no such key in the scene to take out\n");
+    CHECK(run_apsl("validate " + scene_path("curtain.json") + " --set strain_limiting=null").errors.empty());
 }
 
 TEST_CASE("wrong scenes are refused in one line, by run and by validate") {
