@@ -12,6 +12,7 @@
 #include <apsl/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <string_view>
@@ -21,6 +22,15 @@ namespace apsl::scenes {
 namespace {
 
 constexpr std::int64_t max_count = std::numeric_limits<std::int32_t>::max();
+// Shorter ones would draw a cloth into its pins.
+constexpr double least_tethers = 0.01;
+
+// As the limiter has it. `given`: where the scene says it.
+float in_32_bits(double number, const SceneValue& given) {
+    const auto held = static_cast<float>(number);
+    if (!std::isfinite(held)) given.expected("a number that 32 bits hold, at most 3.4e38");
+    return held;
+}
 
 std::array<std::uint32_t, 2> counts(SceneObject& object, const std::string& key,
                                     const std::array<std::uint32_t, 2>& fallback,
@@ -127,6 +137,8 @@ Integrator parse_integrator(SceneObject object) {
         stand_alone.damping = settings.number("damping", stand_alone.damping, Range::at_least(0.0));
         stand_alone.bending = settings.number("bending", stand_alone.bending, Range::at_least(0.0));
         stand_alone.tethers = settings.number("tethers", stand_alone.tethers, Range{.min = 0.0, .max = 1e6});
+        if (stand_alone.tethers > 0.0 && stand_alone.tethers < least_tethers)
+            settings.find("tethers").expected("0 (none) or a number ≥ 0.01");
         // What it had before, and no key of it now.
         if (settings.value().json->contains("bend_stiffness"))
             SceneObject(settings.value())
@@ -160,7 +172,8 @@ void parse_field(SceneObject& object, const Field<Struct, Value>& field, Struct&
                                [](const auto& named) { return std::pair(named.second, named.first); });
         value = object.choice(field.name, value, choices);
     } else if constexpr (std::is_floating_point_v<Value>) {
-        value = static_cast<Value>(object.number(field.name, value, range_of(field.bounds)));
+        const double number = object.number(field.name, value, range_of(field.bounds));
+        value = in_32_bits(number, object.find(field.name));
     } else {
         const auto least = static_cast<std::int64_t>(field.bounds.least);
         const auto greatest = static_cast<std::int64_t>(std::min(field.bounds.greatest, double{max_count}));
@@ -175,7 +188,7 @@ void parse_triangle_values(SceneObject& object, const Field<Parameters, float>& 
     if (given.json == nullptr || !given.json->is_array()) return parse_field(object, field, uniform);
     if (given.json->empty()) given.expected("a number, or one for each triangle");
     for (const SceneValue& entry : given.entries()) {
-        each.push_back(static_cast<float>(entry.number(range_of(field.bounds))));
+        each.push_back(in_32_bits(entry.number(range_of(field.bounds)), entry));
         // Only of a field that may be 0.
         if (!field.bounds.hold(each.back())) {
             std::ostringstream text;
@@ -185,7 +198,7 @@ void parse_triangle_values(SceneObject& object, const Field<Parameters, float>& 
     }
 }
 
-StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
+StrainLimiting parse_strain_limiting(SceneObject object, float time_step) {
     StrainLimiting settings;
     for_each_field(option_fields, [&](const auto& field) { parse_field(object, field, settings.options); });
     for_each_field(parameter_fields, [&](const auto& field) {
@@ -202,7 +215,7 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
         std::ranges::any_of(settings.stretch_ceilings, [](float ceiling) { return ceiling > 0.0f; });
     settings.options.limits_stretch =
         settings.parameters.stretch_ceiling > 0.0f || settings.options.stretch_ceiling_per_triangle;
-    settings.parameters.time_step = static_cast<float>(time_step);
+    settings.parameters.time_step = time_step;
     object.refuse_other_keys();
     try {
         validate(settings.options, settings.parameters);  // of the numbers, what 32-bit floats make of them
@@ -212,24 +225,35 @@ StrainLimiting parse_strain_limiting(SceneObject object, double time_step) {
     return settings;
 }
 
+float held_time_step(SceneObject& object, double time_step) {
+    const SceneValue given = object.find("time_step");
+    const float held = in_32_bits(time_step, given);
+    if (held == 0.0f) given.expected("a number > 0 that 32 bits hold, at least 1.2e-38");
+    return held;
+}
+
 // Options and parameters of whole steps.
-void make_stand_alone(Scene& scene, const SceneValue& integrator) {
+void make_stand_alone(Scene& scene, SceneObject& object) {
     const auto* stand_alone = std::get_if<StandAloneIntegrator>(&scene.integrator);
     if (stand_alone == nullptr) return;
+    SceneObject integrator(object.find("integrator"));
+    SceneObject settings(integrator.find("stand_alone"));
     if (!scene.strain_limiting)
-        integrator.fail("stand_alone is a step of the limiter, expected strain_limiting beside it");
+        integrator.value().fail("stand_alone is a step of the limiter, expected strain_limiting beside it");
     StrainLimiting& limiting = *scene.strain_limiting;
     limiting.options.integrates = true;
     limiting.options.keeps_contacts = !scene.colliders.empty();
+    if (const SceneValue gravity = object.find("gravity"); gravity.json != nullptr)
+        for (const SceneValue& number : gravity.entries()) in_32_bits(number.number(), number);
     for (std::size_t k = 0; k < 3; ++k) limiting.parameters.acceleration[k] = static_cast<float>(scene.gravity[k]);
-    limiting.parameters.damping = static_cast<float>(stand_alone->damping);
-    limiting.parameters.bending = static_cast<float>(stand_alone->bending);
+    limiting.parameters.damping = in_32_bits(stand_alone->damping, settings.find("damping"));
+    limiting.parameters.bending = in_32_bits(stand_alone->bending, settings.find("bending"));
     limiting.options.bends = stand_alone->bending > 0.0;
     limiting.tethers = static_cast<float>(stand_alone->tethers);
     try {
         validate(limiting.options, limiting.parameters);
     } catch (const Error& error) {
-        integrator.fail(std::string("stand_alone: ") + error.what());
+        integrator.value().fail(std::string("stand_alone: ") + error.what());
     }
 }
 
@@ -298,11 +322,11 @@ Scene parse_scene(const nlohmann::json& document, const std::string& file) {
     if (object.has("integrator")) scene.integrator = parse_integrator(SceneObject(object.find("integrator")));
     // null, as --set writes it, is none.
     if (const SceneValue limiting = object.find("strain_limiting"); limiting.json && !limiting.json->is_null())
-        scene.strain_limiting = parse_strain_limiting(SceneObject(limiting), scene.time_step);
+        scene.strain_limiting = parse_strain_limiting(SceneObject(limiting), held_time_step(object, scene.time_step));
     if (object.has("colliders"))
         for (const SceneValue& collider : object.find("colliders").entries())
             scene.colliders.push_back(parse_collider(SceneObject(collider)));
-    make_stand_alone(scene, object.find("integrator"));
+    make_stand_alone(scene, object);
     object.refuse_other_keys();
     return scene;
 }
