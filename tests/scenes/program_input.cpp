@@ -132,6 +132,19 @@ TEST_CASE("places that cannot be written to are refused in one line, before anyt
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 
+TEST_CASE("files that cannot be read are refused in one line that says which, and why") {
+    const TemporaryFolder folder;
+    // A plain file, of which nothing can be read from its beginning on.
+    check_refused("run /proc/self/mem", "/proc/self/mem: reading failed: Input/output error");
+    check_refused("run " + folder.write("scene.json", R"({"mesh": {"file": "/proc/self/mem"}})"),
+                  "/proc/self/mem: reading failed: Input/output error");
+    check_refused("run " + folder.path().string(), folder.path().string() + ": is a folder or a device");
+    check_refused("run " + (folder.path() / "scene.json/scene.json").string(),
+                  "scene.json/scene.json: no such scene file");
+    const std::string name(300, 'a');
+    check_refused("run " + name, name + ": cannot be read: File name too long");
+}
+
 TEST_CASE("a run into a folder that another run writes into is refused in one line") {
     const TemporaryFolder folder;
     const apsl::scenes::FolderLock of_another_run(folder.path());
