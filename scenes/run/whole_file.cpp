@@ -3,19 +3,42 @@
 
 #include "run/input_error.hpp"
 
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <string>
 #include <system_error>
 #include <utility>
 
 namespace apsl::scenes {
+namespace {
+
+// Never put a file in the place of a device or a pipe, least of all as root.
+void check_is_plain(const std::filesystem::path& place) {
+    if (std::filesystem::exists(place) && !std::filesystem::is_regular_file(place))
+        throw InputError(place.string() + ": exists and is no plain file, expected a place for one");
+}
+
+// Makes a file under a name that nothing there has, and takes it out again. `place` is for the message.
+void check_writable(const std::filesystem::path& folder, const std::filesystem::path& place) {
+    std::string probe = (folder / ".apsl_XXXXXX").string();
+    const int descriptor = mkstemp(probe.data());
+    if (descriptor < 0)
+        throw InputError(place.string() + ": cannot be written: " + std::generic_category().message(errno) +
+                         ", expected a writable folder");
+    close(descriptor);
+    unlink(probe.c_str());
+}
+
+}  // namespace
 
 std::filesystem::path partial_file(const std::filesystem::path& place) {
     return place.string() + ".partial";
 }
 
 WholeFile::WholeFile(std::filesystem::path place) : place_(std::move(place)), temporary_(partial_file(place_)) {
-    // Never put a file in the place of a device or a pipe, least of all as root.
-    if (std::filesystem::exists(place_) && !std::filesystem::is_regular_file(place_))
-        throw InputError(place_.string() + ": exists and is no plain file, expected a place for one");
+    check_is_plain(place_);
     stream_.open(temporary_, std::ios::binary | std::ios::trunc);
     if (!stream_) throw InputError(place_.string() + ": cannot be written, expected a writable folder");
 }
@@ -50,17 +73,20 @@ void WholeFile::check() const {
 }
 
 void check_file_place(const std::filesystem::path& file) {
+    if (!file.has_filename()) throw InputError("\"" + file.string() + "\": expected the name of a file");
     if (!file.parent_path().empty() && !std::filesystem::is_directory(file.parent_path()))
         throw InputError(file.string() + ": no such folder, expected one that the file can be written to");
-    WholeFile probe(file);  // not committed: nothing stays
+    check_is_plain(file);
+    check_writable(file.parent_path(), file);
 }
 
 void make_writable_folder(const std::filesystem::path& folder) {
+    if (folder.empty()) throw InputError("\"\": expected the name of a folder");
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error || !std::filesystem::is_directory(folder))
         throw InputError(folder.string() + ": cannot be made a folder" + (error ? ": " + error.message() : ""));
-    WholeFile probe(folder / ".apsl_probe");  // not committed: nothing stays
+    check_writable(folder, folder);
 }
 
 }  // namespace apsl::scenes

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <set>
 
 using namespace apsl::test;
 
@@ -130,6 +131,12 @@ TEST_CASE("places that cannot be written to are refused in one line, before anyt
     check_refused(curtain + " --report /dev/null", "/dev/null: exists and is no plain file");
     check_refused(curtain + " --report " + (folder.path() / "none/report.json").string(), "no such folder");
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+    // Frames enough to run out the test's time.
+    const std::string forever = scene_path("curtain.json") + " --frames 1000000";
+    check_refused("run " + forever + " --report ''", "error: \"\": expected the name of a file");
+    check_refused("run " + forever + " --report " + folder.path().string() + "/", "/\": expected the name of a file");
+    check_refused("run " + forever + " --out ''", "error: \"\": expected the name of a folder");
+    check_refused("tune --target 0.02 " + forever + " --out ''", "error: \"\": expected the name of a file");
 }
 
 TEST_CASE("files that cannot be read are refused in one line that says which, and why") {
@@ -151,6 +158,15 @@ TEST_CASE("a run into a folder that another run writes into is refused in one li
     check_refused("run --frames 1 " + scene_path("curtain_unfiltered.json") + " --out " + folder.path().string(),
                   folder.path().string() + ": another run writes there, expected a folder of its own for each");
     CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("what a folder holds stays but for what a run leaves there") {
+    const TemporaryFolder folder;
+    const std::set<std::string> kept{".apsl_probe", ".apsl_probe.partial", "frame_0000.txt", "report.json.bak"};
+    for (const std::string& name : kept) folder.write(name, name);
+    const std::string out = folder.path().string();
+    CHECK(run_apsl("run --frames 1 " + scene_path("curtain_unfiltered.json") + " --out " + out).exit_code == 0);
+    for (const std::string& name : kept) CHECK(read_bytes(folder.path() / name) == name);
 }
 
 TEST_CASE("an input is never overwritten, whatever names lead to it: refused in one line that names both") {
