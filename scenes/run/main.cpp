@@ -61,7 +61,14 @@ int parse_and_run(int argument_count, char** arguments) {
     run->add_option("SCENE", options.scene, "scene file, JSON")->required();
     const std::map<std::string, Backend> backends{{"opencl", Backend::opencl}, {"reference", Backend::reference}};
     run->add_option("--backend", options.backend, "opencl (default) or reference: this processor")
-        ->transform(CLI::CheckedTransformer(backends).description(""));
+        ->transform(CLI::Validator(
+            [&backends](std::string& text) -> std::string {
+                const auto named = backends.find(text);
+                if (named == backends.end()) return "is " + text + ", expected opencl or reference";
+                text = std::to_string(static_cast<int>(named->second));
+                return {};
+            },
+            ""));
     run->add_option("--device", options.device, "number from apsl devices; default the first GPU, else 0");
     run->add_option("--frames", options.frames, "instead of the scene's")
         ->check(CLI::Range(1, 2'000'000'000).description(""));

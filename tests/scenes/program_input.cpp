@@ -32,7 +32,8 @@ TEST_CASE("wrong usage is refused in one line") {
     check_refused("", "no command, expected run, devices, validate or tune");
     check_refused("fly", "fly");
     check_refused("run", "SCENE is required");
-    check_refused("run " + scene_path("curtain.json") + " --backend cuda", "--backend");
+    check_refused("run " + scene_path("curtain.json") + " --backend cuda",
+                  "--backend: is cuda, expected opencl or reference");
     check_refused("run " + scene_path("curtain.json") + " --frames 0", "--frames");
     check_refused("run " + scene_path("curtain.json") + " --frames many", "--frames");
     check_refused("run " + scene_path("curtain.json") + " --colour", "--colour");
