@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "arrays.hpp"
 
+#include "finite.hpp"
 #include "values.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 namespace apsl::python {
 namespace {
@@ -39,24 +42,39 @@ py::array checked(py::handle argument, const char* name, const std::string& kind
     return array;
 }
 
+// Numbers as `Value`. numpy would make infinity, and a warning, of one that 32 bits do not hold.
+template <class Value>
+Array<Value> converted(const py::array& given, const char* name) {
+    using Converted = py::array_t<Value, py::array::c_style | py::array::forcecast>;
+    if (std::is_same_v<Value, double> || given.dtype().kind() != 'f' || given.itemsize() <= 4) return Converted(given);
+    const py::array_t<double, py::array::c_style | py::array::forcecast> wide(given);
+    const py::ssize_t columns = wide.ndim() > 1 ? wide.shape(1) : 1;
+    Converted narrow(std::vector<py::ssize_t>(wide.shape(), wide.shape() + wide.ndim()));
+    for (py::ssize_t n = 0; n < wide.size(); ++n) {
+        const double number = wide.data()[n];
+        narrow.mutable_data()[n] = static_cast<Value>(number);
+        if (is_finite(number) && !is_finite(narrow.data()[n]))
+            refuse(name, std::string(py::repr(py::float_(number))) + " in row " + std::to_string(n / columns),
+                   "numbers that 32 bits hold, at most 3.4e38");
+    }
+    return narrow;
+}
+
 }  // namespace
 
 template <class Value>
 Array<Value> numbers(py::handle argument, const char* name, std::optional<std::size_t> rows) {
-    return py::array_t < Value,
-           py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows, "triangles", 0));
+    return converted<Value>(checked(argument, name, real_kinds, rows, "triangles", 0), name);
 }
 
 template <class Value>
 Array<Value> table(py::handle argument, const char* name, std::optional<std::size_t> rows, std::size_t columns) {
-    return py::array_t < Value, py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows,
-                                                                                     "triangles", columns));
+    return converted<Value>(checked(argument, name, real_kinds, rows, "triangles", columns), name);
 }
 
 template <class Value>
 Array<Value> vectors(py::handle argument, const char* name, std::optional<std::size_t> rows) {
-    return py::array_t < Value,
-           py::array::c_style | py::array::forcecast > (checked(argument, name, real_kinds, rows, "vertices", 3));
+    return converted<Value>(checked(argument, name, real_kinds, rows, "vertices", 3), name);
 }
 
 template Array<float> numbers<float>(py::handle, const char*, std::optional<std::size_t>);

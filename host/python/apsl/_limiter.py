@@ -160,10 +160,14 @@ _optional_arrays = {"regularization": "regularization_per_triangle", "rest_shape
 
 
 def _check_arrays(call: str, options: dict[str, Any], settings: dict[str, Any]) -> None:
-    """Raises where an array is missing that the options ask for: TypeError where it may have been misspelt."""
+    """Raises where an array is missing that the options ask for, TypeError where it may have been misspelt, or given
+    where they do not."""
+    numbers = StrainLimiter.default_parameters().keys()
     for name, option in _optional_arrays.items():
+        if not options[option] and name in settings.keys() - numbers:
+            raise _opencl.refuse(name, type(settings[name]).__name__, f"nothing (limiter made without {option})")
         if options[option] and name not in settings:
-            unknown = settings.keys() - StrainLimiter.default_parameters().keys() - _optional_arrays.keys()
+            unknown = settings.keys() - numbers - _optional_arrays.keys()
             if unknown:
                 raise TypeError(f"{call}() got an unexpected keyword argument '{min(unknown)}', expected {name}")
             raise _opencl.refuse(name, "nothing", f"an array (limiter made with {option})")
