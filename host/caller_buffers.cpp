@@ -6,7 +6,6 @@
 #include "kernels/constants.h"
 
 #include <string>
-#include <vector>
 
 namespace apsl::host {
 namespace {
@@ -20,12 +19,12 @@ FloatsInUse positions_in_use(const char* name, const BufferView& view, const Opt
 
 void check_buffers(const Buffers& buffers, const Options& options, const CallerCounts& counts, cl_context context,
                    const std::optional<FloatsInUse>& scratch) {
-    std::vector<FloatsInUse> in_use;
-    if (scratch) in_use.push_back(*scratch);
+    MemoryInUse in_use;
+    if (scratch) in_use.add(*scratch);
     const auto use = [&](const FloatsInUse& floats) {
         check_view(floats.view, floats.extent(), floats.written ? Access::read_and_write : Access::read, context,
                    floats.name);
-        in_use.push_back(floats);
+        in_use.add(floats);
     };
     use(positions_in_use("buffers.positions", buffers.positions, options, counts,
                          options.positions_only || options.integrates));
@@ -61,7 +60,6 @@ void check_buffers(const Buffers& buffers, const Options& options, const CallerC
     const std::size_t tethers = std::size_t{options.tethers_per_vertex} * counts.vertices;
     use_optional(tethers > 0, {"buffers.tether_anchors", buffers.tether_anchors, false, tethers}, "tethers_per_vertex");
     use_optional(tethers > 0, {"buffers.tether_lengths", buffers.tether_lengths, false, tethers}, "tethers_per_vertex");
-    check_apart(in_use);
 }
 
 void check_rest_buffers(const BufferView& rest_positions, const FloatsInUse& target, const Options& options,
@@ -69,10 +67,10 @@ void check_rest_buffers(const BufferView& rest_positions, const FloatsInUse& tar
     const FloatsInUse positions = positions_in_use("rest_positions", rest_positions, options, counts, false);
     check_view(positions.view, positions.extent(), Access::read, context, positions.name);
     check_view(target.view, target.extent(), Access::write, context, target.name);
-    std::vector<FloatsInUse> in_use;
-    if (scratch) in_use.push_back(*scratch);
-    in_use.insert(in_use.end(), {positions, target});
-    check_apart(in_use);
+    MemoryInUse in_use;
+    if (scratch) in_use.add(*scratch);
+    in_use.add(positions);
+    in_use.add(target);
 }
 
 const BufferView& corrected(const Buffers& buffers) {

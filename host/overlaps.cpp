@@ -9,26 +9,11 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace apsl::host {
 namespace {
 
 using Whole = std::int64_t;
-
-// A memory object that is no other's part, and where in it something begins, in floats.
-struct Place {
-    cl_mem buffer;
-    Whole first;
-};
-
-Place place_of(const BufferView& view) {
-    const char* doing = "asking a buffer for the one that it is part of";
-    const auto whole = info<cl_mem>(clGetMemObjectInfo, view.buffer, CL_MEM_ASSOCIATED_MEMOBJECT, doing);
-    std::size_t bytes = view.offset;
-    if (whole) bytes += info<std::size_t>(clGetMemObjectInfo, view.buffer, CL_MEM_OFFSET, doing);
-    return {whole ? whole : view.buffer, static_cast<Whole>(bytes / sizeof(float))};
-}
 
 Whole divided_down(Whole number, Whole by) {
     return number / by - (number % by < 0 ? 1 : 0);
@@ -78,19 +63,26 @@ std::optional<Whole> common_float(const FloatsInUse& a, Whole first_a, const Flo
 
 }  // namespace
 
-void check_apart(std::span<const FloatsInUse> in_use) {
-    std::vector<Place> places;
-    places.reserve(in_use.size());
-    for (const FloatsInUse& floats : in_use) places.push_back(place_of(floats.view));
-    for (std::size_t a = 0; a < in_use.size(); ++a)
-        for (std::size_t b = a + 1; b < in_use.size(); ++b) {
-            if (places[a].buffer != places[b].buffer || !(in_use[a].written || in_use[b].written)) continue;
-            const auto shared = common_float(in_use[a], places[a].first, in_use[b], places[b].first);
-            if (shared)
-                invalid(std::string(in_use[b].name) + " overlaps " + in_use[a].name + ": both have byte " +
-                        std::to_string(*shared * static_cast<Whole>(sizeof(float))) + " of one buffer, and " +
-                        in_use[in_use[a].written ? a : b].name + " is written");
-        }
+MemoryInUse::Place MemoryInUse::place_of(const BufferView& view) {
+    const char* doing = "asking a buffer for the one that it is part of";
+    const auto whole = info<cl_mem>(clGetMemObjectInfo, view.buffer, CL_MEM_ASSOCIATED_MEMOBJECT, doing);
+    std::size_t bytes = view.offset;
+    if (whole) bytes += info<std::size_t>(clGetMemObjectInfo, view.buffer, CL_MEM_OFFSET, doing);
+    return {whole ? whole : view.buffer, static_cast<Whole>(bytes / sizeof(float))};
+}
+
+void MemoryInUse::add(const FloatsInUse& floats) {
+    const Placed added{floats, place_of(floats.view)};
+    for (std::size_t n = 0; n < count_; ++n) {
+        const Placed& earlier = placed_[n];
+        if (earlier.place.buffer != added.place.buffer || !(earlier.floats.written || floats.written)) continue;
+        const auto shared = common_float(earlier.floats, earlier.place.first, floats, added.place.first);
+        if (shared)
+            invalid(std::string(floats.name) + " overlaps " + earlier.floats.name + ": both have byte " +
+                    std::to_string(*shared * static_cast<Whole>(sizeof(float))) + " of one buffer, and " +
+                    (earlier.floats.written ? earlier.floats : floats).name + " is written");
+    }
+    placed_.at(count_++) = added;
 }
 
 }  // namespace apsl::host

@@ -85,6 +85,17 @@ std::vector<double> predicted_area_changes(const ClothState& cloth, double time_
     return changes;
 }
 
+double pinned_area_change(const ClothState& cloth) {
+    const std::vector<double> changes = area_changes(cloth);
+    double greatest = 0.0;
+    for (std::size_t triangle = 0; triangle < changes.size(); ++triangle) {
+        const Triangle& corners = cloth.topology->triangles()[triangle];
+        if (std::ranges::all_of(corners, [&](std::uint32_t v) { return cloth.inverse_masses[v] == 0.0; }))
+            greatest = std::max(greatest, changes[triangle]);
+    }
+    return greatest;
+}
+
 AreaChange summarize(const ClothState& cloth, const std::vector<double>& changes) {
     AreaChange summary;
     double weighted_squares = 0.0;

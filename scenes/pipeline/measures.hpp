@@ -41,6 +41,10 @@ std::vector<double> predicted_area_changes(const ClothState& cloth, double time_
 /// The same at the current positions.
 std::vector<double> area_changes(const ClothState& cloth);
 
+/// Greatest |A − A⁰| / A⁰ at the current positions of the triangles whose three corners are pinned. No limiter can do
+/// anything about it.
+double pinned_area_change(const ClothState& cloth);
+
 /// Greatest and RMS of `changes` over the triangles with A⁰ > 0.
 AreaChange summarize(const ClothState& cloth, const std::vector<double>& changes);
 

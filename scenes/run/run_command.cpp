@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 
 namespace apsl::scenes {
@@ -56,6 +57,15 @@ std::vector<std::string> late_warnings(const Simulation& simulation, const RunRe
     std::vector<std::string> warnings;
     if (std::string advice = convergence_advice(report); !advice.empty()) warnings.push_back(std::move(advice));
     if (std::string advice = ceiling_advice(report); !advice.empty()) warnings.push_back(std::move(advice));
+    constexpr double much = 0.05;
+    if (simulation.pinned_area_change() > much) {
+        std::ostringstream text;
+        text.precision(3);
+        text << "triangles whose three corners are pinned change their areas by up to "
+             << 100.0 * simulation.pinned_area_change()
+             << " %, by the motion of their pins alone; no limiter can mend that, and the report counts it";
+        warnings.push_back(text.str());
+    }
     if (simulation.unconverged_spring_solves() > 0) {
         warnings.push_back("the springs' solve did not converge in " +
                            std::to_string(simulation.unconverged_spring_solves()) +

@@ -267,6 +267,7 @@ FrameReport Simulation::run_frame() {
         measure_stretches(report);
         if (keep_area_changes_) area_changes_ = scenes::area_changes(cloth_);
     }
+    if (moving_pins_) pinned_area_change_ = std::max(pinned_area_change_, scenes::pinned_area_change(cloth_));
     report.max_speed = greatest_speed(cloth_);
     report.energy = energy();
     report.measuring_seconds += measuring.seconds();

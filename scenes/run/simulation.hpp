@@ -38,6 +38,8 @@ public:
     const std::vector<std::string>& stages() const { return stages_; }
     /// Steps whose spring solve ended short of its tolerance.
     int unconverged_spring_solves() const { return unconverged_spring_solves_; }
+    /// Of all frames so far: pins that move apart change the areas of triangles between them.
+    double pinned_area_change() const { return pinned_area_change_; }
     /// What the set-up had to do that a user should know of; one line each.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -70,6 +72,7 @@ private:
     bool keep_area_changes_;
     int frame_ = 0;
     int unconverged_spring_solves_ = 0;
+    double pinned_area_change_ = 0.0;
     std::vector<double> area_changes_;
     OverStretch over_stretch_;
     std::optional<Breakdown> breakdown_;

@@ -233,7 +233,8 @@ TEST_CASE("overlaps: as counting every float has them, whatever the strides", "[
         std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
         std::string message;
         try {
-            host::check_apart(in_use);
+            host::MemoryInUse call;
+            for (const host::FloatsInUse& floats_in_use : in_use) call.add(floats_in_use);
         } catch (const Error& error) {
             message = error.what();
         }

@@ -334,6 +334,19 @@ TEST_CASE("a stand-alone cloth: stages and parts of the time, and a warning wher
                    Catch::Contains("warning: ") && Catch::Contains("areas alone do not hold a cloth together"));
 }
 
+TEST_CASE("triangles that pins alone change are warned of") {
+    const auto errors = [](const std::string& velocity) {
+        return run_apsl("run " + scene_path("stand_alone_curtain.json") +
+                        " --frames 6 --set 'mesh.grid={\"vertices\":[5,5]}' --set 'pins=[{\"vertices\":[0,1,6]},"
+                        "{\"vertices\":[5],\"motion\":{\"translate\":{\"velocity\":" +
+                        velocity + "}}}]'")
+            .errors;
+    };
+    const std::string warning = "warning: triangles whose three corners are pinned change their areas by up to ";
+    CHECK_THAT(errors("[0.5,-1,0.5]"), Catch::Contains(warning));
+    CHECK_THAT(errors("[0,0,0]"), !Catch::Contains(warning));
+}
+
 TEST_CASE("bending springs that had to be added are warned of") {
     const std::string command = "validate " + scene_path("stand_alone_curtain.json") +
                                 " --set integrator.bending_springs={} --set mesh.grid.diagonals=";

@@ -35,6 +35,17 @@ TEST_CASE("measures: a cloth scaled to half its size has every area change 3/4 a
     CHECK(edge_stretch(cloth).max == Approx(0.5).epsilon(1e-13));
 }
 
+TEST_CASE("measures: what pins make of the triangles between them") {
+    ClothState cloth = sample_cloth(test::grid(2, 2, 1.0, 1.0, test::Diagonals::uniform));
+    const Triangle pinned = cloth.topology->triangles()[0];
+    for (std::size_t v = 0; v < 4; ++v) cloth.positions[3 * v] *= 1.5;
+    CHECK(pinned_area_change(cloth) == 0.0);
+    cloth.inverse_masses[pinned[0]] = cloth.inverse_masses[pinned[1]] = 0.0;
+    CHECK(pinned_area_change(cloth) == 0.0);
+    cloth.inverse_masses[pinned[2]] = 0.0;
+    CHECK(pinned_area_change(cloth) == Approx(0.5).epsilon(1e-13));
+}
+
 TEST_CASE("measures: greatest and root mean square by hand, triangles without rest area left out") {
     ClothState cloth = sample_cloth(test::grid(2, 2, 1.0, 1.0, test::Diagonals::uniform));
     AreaChange change = summarize(cloth, {0.3, 0.4});
