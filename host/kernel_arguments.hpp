@@ -210,8 +210,8 @@ const Kernel& measure_energy(const Kernel& kernel, const Arrays& a, const Buffer
 
 template <class Arrays>
 const Kernel& end_call(const Kernel& kernel, const Arrays& a) {
-    return set_arguments(kernel, a.cloths, a.states, a.stats, a.partials, a.vertex_order, a.triangle_order, a.triangles,
-                         a.moved, a.ordered_rest, a.groups);
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.partials, a.vertex_order,
+                         a.triangle_order, a.triangles, a.moved, a.ordered_rest, a.groups);
 }
 
 template <class Arrays>

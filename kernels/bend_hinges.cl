@@ -26,7 +26,7 @@ APSLK_INLINE float3 ahead_of_start(float4 moved, float4 motion, float time_step,
 }
 
 // Gradients times √k, and moments √k (θ − θ⁰). Hinges of cloth c: hinge_offsets[c] to hinge_offsets[c + 1]. In the
-// first part also the energy Σ ½ k (θ − θ⁰)² that they hold.
+// first and in the last part also the energy Σ ½ k (θ − θ⁰)² that they hold.
 APSLK_KERNEL void bend_hinges(__global const apslk_parameters* parameters, __global const apslk_solve_state* states,
                               __global float* partials, __global const uint* hinge_offsets,
                               __global const uint* hinge_order, __global const uint4* hinges,
@@ -73,7 +73,10 @@ APSLK_KERNEL void bend_hinges(__global const apslk_parameters* parameters, __glo
         energy += 0.5f * moment * moment;
     }
     const float held = group_sum(energy, scratch);
-    if (part == 0) store_partial(partials, APSLK_PARTIAL_BENDING_ENERGY, held);
+    if (part == 0)
+        store_partial(partials, APSLK_PARTIAL_BENDING_ENERGY, held);
+    else if (part + 1 == parameters[c].small_steps)
+        store_partial(partials, APSLK_PARTIAL_BENDING_LEFT, held);
 }
 
 // A hinge's gradients times the steps of its vertices.

@@ -108,11 +108,18 @@ APSLK_INLINE apslk_drive find_drive(__global float* partials, uint groups, __loc
     return drive;
 }
 
-// m/s: what a body is faster than the vertex that may touch it, both in the frame. 0: nothing, or slower.
-APSLK_INLINE float speed_beyond(float3 velocity, float3 frame, __global const float* contacts, uint vertex) {
+// m²/s²: what a body adds at most to the square of the velocity of the vertex that may touch it, both in the frame. It
+// pushes along its normal up to its own speed there, and drags along its surface where there is friction.
+APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const float* contacts, uint vertex) {
 #if APSLK_KEEPS_CONTACTS
-    if (!may_touch(contacts, vertex)) return 0.0f;
-    return fmax(length(vload4(2ul * vertex + 1ul, contacts).xyz - frame) - length(velocity - frame), 0.0f);
+    const float3 normal = vload4(2ul * vertex, contacts).xyz;
+    const float4 surface = vload4(2ul * vertex + 1ul, contacts);
+    const float3 body = surface.xyz - frame, own = velocity - frame;
+    const float pushing = dot(body, normal), into = dot(own, normal);
+    const float3 slip = along_surface(own, normal), drag = along_surface(body, normal);
+    const float pushed = pushing > into ? fmax(pushing * pushing - into * into, 0.0f) : 0.0f;
+    const float dragged = surface.w > 0.0f ? fmax(dot(drag, drag) - dot(slip, slip), 0.0f) : 0.0f;
+    return any(normal != 0.0f) ? pushed + dragged : 0.0f;
 #else
     (void)velocity;
     (void)frame;
@@ -122,8 +129,14 @@ APSLK_INLINE float speed_beyond(float3 velocity, float3 frame, __global const fl
 #endif
 }
 
-// The share of its velocity that a cloth keeps in the frame. Roots of Σ m |u|² there: `free`, with what hinges hold at
-// the start of the step, `driven` of all mass at the speed of what drives it, and `left` by the step.
+// J, of all parts: what hinges held at the start, less what they held at the start of the last part of several.
+APSLK_INLINE float bending_given(float at_start, float left, int parts) {
+    const float count = (float)parts;
+    return fmax(at_start - left, 0.0f) * count / fmax(count - 1.0f, 1.0f);
+}
+
+// The share of its velocity that a cloth keeps in the frame. Roots of Σ m |u|² there: `free`, with what hinges gave,
+// `driven` of all mass at the speed of what drives it, and `left` by the step.
 APSLK_INLINE float velocity_kept_by_energy(float free, float driven, float left) {
     const float allowed = free + driven;
     return left > APSLK_ENERGY_LET_PASS * allowed ? allowed / left : 1.0f;

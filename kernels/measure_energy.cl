@@ -19,7 +19,7 @@ APSLK_KERNEL void measure_energy(__global const apslk_cloth* cloths, __global co
     const apslk_free_step free = free_step(parameters + c, APSLK_ACCELERATIONS);
     const apslk_cloth cloth = cloths[c];
     const apslk_range range = share_of(cloth.vertex_count, parameters[c].enabled);
-    float before = 0.0f, left = 0.0f, faster = 0.0f;
+    float before = 0.0f, left = 0.0f, added = 0.0f;
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
         const uint place = cloth.vertex_begin + v, vertex = vertex_order[place];
         const float4 step = motion[place];
@@ -30,11 +30,11 @@ APSLK_KERNEL void measure_energy(__global const apslk_cloth* cloths, __global co
         const float3 limited = step.xyz / parameters[c].time_step - drive.velocity;
         before += dot(own, own) / step.w;
         left += dot(limited, limited) / step.w;
-        faster = fmax(faster, speed_beyond(unlimited, drive.velocity, contacts + contact_offset, vertex));
+        added += added_by_body(unlimited, drive.velocity, contacts + contact_offset, vertex) / step.w;
     }
     store_partial(partials, APSLK_PARTIAL_FREE_ENERGY, group_sum(before, scratch));
     store_partial(partials, APSLK_PARTIAL_ENERGY, group_sum(left, scratch));
-    store_partial(partials, APSLK_PARTIAL_FASTER_BODY, group_max(faster, scratch));
+    store_partial(partials, APSLK_PARTIAL_ADDED_BY_BODIES, group_sum(added, scratch));
     if (get_group_id(0) == 0 && get_local_id(0) == 0) {
         vstore3(drive.velocity, 0, states[c].drive);
         states[c].pins = drive.pins;

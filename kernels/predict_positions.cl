@@ -37,6 +37,7 @@ APSLK_KERNEL void predict_positions(__global const apslk_cloth* cloths, __global
 #if APSLK_INTEGRATES
     store_drive_partials(sums.drive, partials, scratch);
     store_partial(partials, APSLK_PARTIAL_BENDING_ENERGY, 0.0f);  // until bend_hinges finds any
+    store_partial(partials, APSLK_PARTIAL_BENDING_LEFT, 0.0f);
 #endif
     if (get_group_id(0) == 0 && get_local_id(0) == 0) {
         states[c].stopped = !parameters[c].enabled;

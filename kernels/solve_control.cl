@@ -76,10 +76,11 @@ APSLK_KERNEL void begin_solve(__global const apslk_parameters* parameters, __glo
 
 // Statistics of the areas the call leaves behind; a call that went wrong on the way, or left the cloth worse than it
 // was, leaves nothing behind.
-APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_solve_state* states,
-                           __global apslk_stats* stats, __global float* partials, __global const uint* vertex_order,
-                           __global const uint* triangle_order, __global const uint* triangles,
-                           __global const float4* moved, __global const float* rest_areas, uint groups) {
+APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
+                           __global apslk_solve_state* states, __global apslk_stats* stats, __global float* partials,
+                           __global const uint* vertex_order, __global const uint* triangle_order,
+                           __global const uint* triangles, __global const float4* moved,
+                           __global const float* rest_areas, uint groups) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     const apslk_area_change change = area_change(partials, groups, scratch);
@@ -89,10 +90,14 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_so
     const float raised = sum_partials(partials, APSLK_PARTIAL_RAISED, groups, scratch);
     const float mass_ratio = max_partials(partials, APSLK_PARTIAL_MASS_RATIO, groups, scratch);
 #if APSLK_INTEGRATES
-    const float free_energy = sum_partials(partials, APSLK_PARTIAL_FREE_ENERGY, groups, scratch) +
-                              2.0f * sum_partials(partials, APSLK_PARTIAL_BENDING_ENERGY, groups, scratch);
+    const float free_energy = sum_partials(partials, APSLK_PARTIAL_FREE_ENERGY, groups, scratch);
+    const float bent = sum_partials(partials, APSLK_PARTIAL_BENDING_ENERGY, groups, scratch);
+    const float left_bent = sum_partials(partials, APSLK_PARTIAL_BENDING_LEFT, groups, scratch);
     const float energy = sum_partials(partials, APSLK_PARTIAL_ENERGY, groups, scratch);
-    const float faster_body = max_partials(partials, APSLK_PARTIAL_FASTER_BODY, groups, scratch);
+    const float added_by_bodies = sum_partials(partials, APSLK_PARTIAL_ADDED_BY_BODIES, groups, scratch);
+#endif
+#if !APSLK_INTEGRATES
+    (void)parameters;
 #endif
 #if APSLK_LIMITS_STRETCH
     const float stretch_rows = sum_partials(partials, APSLK_PARTIAL_STRETCH_ROWS, groups, scratch);
@@ -113,8 +118,9 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global apslk_so
     if (diverged) stats[c].status = APSLK_STATUS_DIVERGED;
     states[c].discarded = diverged || verdict.worse || none;
 #if APSLK_INTEGRATES
-    const float driven = (states[c].pins + faster_body) * sqrt(states[c].mass);
-    states[c].velocity_kept = velocity_kept_by_energy(sqrt(free_energy), driven, sqrt(energy));
+    const float gave = bending_given(bent, left_bent, parameters[c].small_steps);
+    const float driven = states[c].pins * sqrt(states[c].mass) + sqrt(added_by_bodies);
+    states[c].velocity_kept = velocity_kept_by_energy(sqrt(free_energy + 2.0f * gave), driven, sqrt(energy));
 #endif
     if (stats[c].status == APSLK_STATUS_OFF) return;
     stats[c].raised_vertices = (uint)raised;

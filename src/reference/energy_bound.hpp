@@ -21,13 +21,26 @@ namespace apsl::reference {
 /// What drives a cloth, and the frame that energies are measured in.
 struct Drive {
     Vector3<double> velocity = Vector3<double>::Zero();  ///< m/s, of the frame
-    double speed = 0.0;                                  ///< m/s, of what drives the cloth there
+    double pins = 0.0;                                   ///< m/s, of the pins there
+    double bodies = 0.0;                                 ///< kg m²/s², what bodies can add to Σ m |u|² there
 };
 
-/// The frame is the middle of the box around the velocities of the pins. Of a cloth without pins it is its own mean
-/// velocity, or, where it may touch something, what stands still. Pins drive by half the diagonal of their box, a body
-/// by what it is faster than the vertex that may touch it. `free`: m/s, [3V], velocities at the end of the step where
-/// nothing but acceleration and damping acts.
+/// m²/s²: what a body adds at most to the square of a vertex' velocity, both in the frame. It pushes along its normal
+/// up to its own speed there, and drags along its surface where there is friction.
+template <class Real>
+double added_by_body(const Contact<Real>& contact, const Vector3<double>& velocity, const Vector3<double>& frame) {
+    const Vector3<double> body = contact.velocity.template cast<double>() - frame, own = velocity - frame,
+                          normal = contact.normal.template cast<double>();
+    const double pushing = body.dot(normal), into = own.dot(normal);
+    const double pushed = pushing > into ? std::max(pushing * pushing - into * into, 0.0) : 0.0;
+    if (!(contact.friction > Real(0))) return pushed;
+    const double dragged = (body - pushing * normal).squaredNorm() - (own - into * normal).squaredNorm();
+    return pushed + std::max(dragged, 0.0);
+}
+
+/// The frame is the middle of the box around the velocities of the pins, and they drive by half its diagonal. Of a
+/// cloth without pins it is its own mean velocity, or, where it may touch something, what stands still. `free`: m/s,
+/// [3V], velocities at the end of the step where nothing but acceleration and damping acts.
 template <class Real>
 Drive drive(const Buffers<Real>& buffers, std::span<const Real> free) {
     Eigen::AlignedBox<double, 3> pins;
@@ -47,15 +60,13 @@ Drive drive(const Buffers<Real>& buffers, std::span<const Real> free) {
     }
     Drive found;
     if (!pins.isEmpty())
-        found = {pins.center(), 0.5 * pins.diagonal().norm()};
+        found = {pins.center(), 0.5 * pins.diagonal().norm(), 0.0};
     else if (!touches && mass > 0.0)
         found.velocity = momentum / mass;
-    double faster = 0.0;
     for (std::size_t i = 0; touches && i < buffers.inverse_masses.size(); ++i)
         if (buffers.inverse_masses[i] > Real(0) && !contact(i).normal.isZero(Real(0)))
-            faster = std::max(faster, (contact(i).velocity.template cast<double>() - found.velocity).norm() -
-                                          (velocity(i) - found.velocity).norm());
-    found.speed += faster;
+            found.bodies +=
+                added_by_body(contact(i), velocity(i), found.velocity) / static_cast<double>(buffers.inverse_masses[i]);
     return found;
 }
 
@@ -71,12 +82,12 @@ public:
             if (inverse_mass > Real(0)) mass_ += 1.0 / static_cast<double>(inverse_mass);
     }
 
-    /// What hinges hold at the start of the step, J.
-    void add_bending(double energy) { squares_ += 2.0 * energy; }
+    /// What hinges gave, J.
+    void add_bending(double energy) { squares_ += 2.0 * std::max(energy, 0.0); }
 
     /// Slows the whole cloth, in the frame of what drives it, where it has more energy than it may.
     void apply(std::span<Real> velocities) const {
-        const double allowed = std::sqrt(squares_) + drive_.speed * std::sqrt(mass_),
+        const double allowed = std::sqrt(squares_) + drive_.pins * std::sqrt(mass_) + std::sqrt(drive_.bodies),
                      root = std::sqrt(squares(velocities));
         if (!(root > double{APSLK_ENERGY_LET_PASS} * allowed)) return;
         const auto kept = static_cast<Real>(allowed / root);

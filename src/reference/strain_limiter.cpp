@@ -86,6 +86,7 @@ struct BasicStrainLimiter<Real>::Implementation {
     StretchLimiting<Real> stretches;  ///< with Options::limits_stretch
     Bending<Real> bending;            ///< with Options::bends
     EnergyBound<Real> energy;         ///< with Options::integrates
+    double bending_energy = 0.0;      ///< J, of hinges at the start of the step
     Stats stats{};
 
     void predict(const Buffers<Real>& buffers, const ResolvedParameters& parameters) {
@@ -160,7 +161,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         motion.resize(moved.size());
         for (std::size_t n = 0; n < moved.size(); ++n) motion[n] = time_step * buffers.velocities[n];
         begin_part(buffers, parameters, 0);
-        if (options.bends) energy.add_bending(bending.energy());
+        bending_energy = bending.energy();
         return standing(buffers);
     }
 
@@ -367,7 +368,12 @@ struct BasicStrainLimiter<Real>::Implementation {
             velocities[n] = moves ? motion[n] / time_step : unlimited[n];
             if (!moves) moved[n] = predicted[n];
         }
-        if (limited) energy.apply(velocities);
+        if (limited) {
+            // Of all parts, by what the hinges hold at the start of the last.
+            const double count = parameters.small_steps, end = count > 1.0 ? bending.energy() : 0.0;
+            energy.add_bending((bending_energy - end) * count / std::max(count - 1.0, 1.0));
+            energy.apply(velocities);
+        }
         if (!all_finite<Real>(moved) || !all_finite<Real>(velocities)) return false;
         std::copy(moved.begin(), moved.end(), buffers.end_positions.begin());
         std::copy(velocities.begin(), velocities.end(), buffers.velocities.begin());

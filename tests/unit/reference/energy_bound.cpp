@@ -5,7 +5,6 @@
 
 #include <apsl/reference.hpp>
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -80,28 +79,43 @@ struct Crumpled {
 }  // namespace
 
 TEST_CASE("energy: what drives a cloth, and in which frame", "[energy]") {
-    const auto check = [](const Drive& got, const Vector3<double>& velocity, double speed) {
+    const auto check = [](const Drive& got, const Vector3<double>& velocity, double pins, double bodies) {
         CHECK((got.velocity - velocity).norm() <= 1e-14);
-        CHECK(got.speed == Approx(speed).margin(1e-14));
+        CHECK(got.pins == Approx(pins).margin(1e-14));
+        CHECK(got.bodies == Approx(bodies).margin(1e-13));
     };
     // Pins of (1, 0, 0) and (3, 2, 0).
     const Numbers free{1, 0, 0, 2, 1, 1, 3, 2, 0, 2, 1, 2};
-    check(drive<double>(buffers({0, 1, 0, 1}), free), {2, 1, 0}, std::sqrt(2.0));
-    // There the second vertex has 1 m/s and a plane of 4 m/s, the fourth 2 m/s and a plane of 4 m/s too, or none.
-    const Numbers contacts{0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 6, 1, 0, 0,
-                           0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 2, 1, 4, 0};
-    Numbers fewer = contacts;
-    std::fill(fewer.begin() + 8, fewer.begin() + 11, 0.0);
-    check(drive<double>(buffers({0, 1, 0, 1}, contacts), free), {2, 1, 0}, std::sqrt(2.0) + 3.0);
-    check(drive<double>(buffers({0, 1, 0, 1}, fewer), free), {2, 1, 0}, std::sqrt(2.0) + 2.0);
-    // A body that is slower than what touches it drives nothing.
-    check(drive<double>(buffers({1}, {0, 0, 1, 0, 0, 0, 3, 0}), Numbers{0, 0, -5}), {0, 0, 0}, 0.0);
-    check(drive<double>(buffers({1}, {0, 0, 1, 0, 0, 0, 3, 0}), Numbers{0, 0, -1}), {0, 0, 0}, 2.0);
-    // Masses of 1 and 4 kg, without pins: free in all, or with nothing that they may touch.
+    check(drive<double>(buffers({0, 1, 0, 1}), free), {2, 1, 0}, std::sqrt(2.0), 0.0);
+    // There the second vertex, of 0.5 kg, has 1 m/s along its normal, where its plane has 4 m/s. The fourth is faster
+    // than its plane.
+    const Numbers contacts{0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 6, 1, 4, 0,
+                           0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 2, 1, 1, 0};
+    check(drive<double>(buffers({0, 2, 0, 1}, contacts), free), {2, 1, 0}, std::sqrt(2.0), 0.5 * (16.0 - 1.0));
+    // Masses of 1 and 4 kg, without pins: with nothing that they may touch, or before a wall that stands still.
     const Numbers flying{5, 0, 0, 0, 10, 0};
-    check(drive<double>(buffers({1, 0.25}), flying), {1, 8, 0}, 0.0);
-    check(drive<double>(buffers({1, 0.25}, Numbers(16, 0.0)), flying), {1, 8, 0}, 0.0);
-    check(drive<double>(buffers({}), Numbers{}), {0, 0, 0}, 0.0);
+    check(drive<double>(buffers({1, 0.25}), flying), {1, 8, 0}, 0.0, 0.0);
+    check(drive<double>(buffers({1, 0.25}, Numbers(16, 0.0)), flying), {1, 8, 0}, 0.0, 0.0);
+    check(drive<double>(buffers({1, 0.25}, {0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1}), flying), {0, 0, 0}, 0.0,
+          0.0);
+    check(drive<double>(buffers({}), Numbers{}), {0, 0, 0}, 0.0, 0.0);
+}
+
+TEST_CASE("energy: what a body adds to a vertex, by hand", "[energy]") {
+    // (square, with friction) of a body that pushes by 3 m/s along z and moves by 2 m/s along its surface.
+    const auto added = [](const Vector3<double>& own, double friction) {
+        const Numbers numbers{0, 0, 1, 0, 2, 0, 3, friction};
+        return added_by_body(Contact<double>(numbers, 0), own, {0, 0, 0});
+    };
+    CHECK(added({0, 0, 0}, 0.0) == Approx(9.0));
+    CHECK(added({0, 0, 0}, 0.1) == Approx(13.0));
+    CHECK(added({50, 0, 0}, 0.0) == Approx(9.0));  // across: squares add
+    CHECK(added({50, 0, 0}, 0.1) == Approx(9.0));  // friction slows
+    CHECK(added({0, 0, 2}, 0.0) == Approx(5.0));
+    CHECK(added({0, 0, -2}, 0.0) == Approx(5.0));
+    CHECK(added({0, 0, -4}, 0.0) == 0.0);  // it loses
+    CHECK(added({0, 0, 4}, 0.0) == 0.0);   // it is ahead
+    CHECK(added_by_body(Contact<double>(Numbers{0, 0, 1, 0, 2, 0, 3, 0}, 0), {2, 0, 3}, {2, 0, 3}) == 0.0);
 }
 
 TEST_CASE("energy: a cloth at pins that stand still keeps at most that of the free step, by hand", "[energy]") {
