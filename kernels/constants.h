@@ -77,6 +77,8 @@
 
 // What the root of a whole step's energy may be off by, which the discrete step is (docs/formulation.md, Energy).
 #define APSLK_ENERGY_LET_PASS 1.001f
+// What a body that is faster than a vertex sets in motion by it, in masses of the vertex.
+#define APSLK_PULLED_ALONG 16.0f
 
 // Safety factor of the bound of the matrix. With Options::bound_interval above 1 the directions in it are those of an
 // earlier sub-step, and the cloth has moved since.

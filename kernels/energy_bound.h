@@ -109,7 +109,8 @@ APSLK_INLINE apslk_drive find_drive(__global float* partials, uint groups, __loc
 }
 
 // m²/s²: what a body adds at most to the square of the velocity of the vertex that may touch it, both in the frame. It
-// pushes along its normal up to its own speed there, and drags along its surface where there is friction.
+// pushes along its normal up to its own speed there, and drags along its surface where there is friction. A body that
+// is faster than the vertex also sets in motion what hangs on it.
 APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const float* contacts, uint vertex) {
 #if APSLK_KEEPS_CONTACTS
     const float3 normal = vload4(2ul * vertex, contacts).xyz;
@@ -119,7 +120,8 @@ APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const f
     const float3 slip = along_surface(own, normal), drag = along_surface(body, normal);
     const float pushed = pushing > into ? fmax(pushing * pushing - into * into, 0.0f) : 0.0f;
     const float dragged = surface.w > 0.0f ? fmax(dot(drag, drag) - dot(slip, slip), 0.0f) : 0.0f;
-    return any(normal != 0.0f) ? pushed + dragged : 0.0f;
+    const float pulled = dot(body, body) > dot(own, own) ? APSLK_PULLED_ALONG : 1.0f;
+    return any(normal != 0.0f) ? pulled * (pushed + dragged) : 0.0f;
 #else
     (void)velocity;
     (void)frame;

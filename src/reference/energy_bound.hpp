@@ -32,10 +32,10 @@ double added_by_body(const Contact<Real>& contact, const Vector3<double>& veloci
     const Vector3<double> body = contact.velocity.template cast<double>() - frame, own = velocity - frame,
                           normal = contact.normal.template cast<double>();
     const double pushing = body.dot(normal), into = own.dot(normal);
-    const double pushed = pushing > into ? std::max(pushing * pushing - into * into, 0.0) : 0.0;
-    if (!(contact.friction > Real(0))) return pushed;
-    const double dragged = (body - pushing * normal).squaredNorm() - (own - into * normal).squaredNorm();
-    return pushed + std::max(dragged, 0.0);
+    double added = pushing > into ? std::max(pushing * pushing - into * into, 0.0) : 0.0;
+    if (contact.friction > Real(0))
+        added += std::max((body - pushing * normal).squaredNorm() - (own - into * normal).squaredNorm(), 0.0);
+    return body.squaredNorm() > own.squaredNorm() ? double{APSLK_PULLED_ALONG} * added : added;
 }
 
 /// The frame is the middle of the box around the velocities of the pins, and they drive by half its diagonal. Of a

@@ -87,11 +87,11 @@ TEST_CASE("energy: what drives a cloth, and in which frame", "[energy]") {
     // Pins of (1, 0, 0) and (3, 2, 0).
     const Numbers free{1, 0, 0, 2, 1, 1, 3, 2, 0, 2, 1, 2};
     check(drive<double>(buffers({0, 1, 0, 1}), free), {2, 1, 0}, std::sqrt(2.0), 0.0);
-    // There the second vertex, of 0.5 kg, has 1 m/s along its normal, where its plane has 4 m/s. The fourth is faster
-    // than its plane.
+    // There the second vertex, of 0.5 kg, has 1 m/s along its normal, where its plane has 4 m/s: that pulls others
+    // along. The fourth is faster than its plane.
     const Numbers contacts{0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 6, 1, 4, 0,
                            0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 2, 1, 1, 0};
-    check(drive<double>(buffers({0, 2, 0, 1}, contacts), free), {2, 1, 0}, std::sqrt(2.0), 0.5 * (16.0 - 1.0));
+    check(drive<double>(buffers({0, 2, 0, 1}, contacts), free), {2, 1, 0}, std::sqrt(2.0), 16.0 * 0.5 * (16.0 - 1.0));
     // Masses of 1 and 4 kg, without pins: with nothing that they may touch, or before a wall that stands still.
     const Numbers flying{5, 0, 0, 0, 10, 0};
     check(drive<double>(buffers({1, 0.25}), flying), {1, 8, 0}, 0.0, 0.0);
@@ -107,12 +107,12 @@ TEST_CASE("energy: what a body adds to a vertex, by hand", "[energy]") {
         const Numbers numbers{0, 0, 1, 0, 2, 0, 3, friction};
         return added_by_body(Contact<double>(numbers, 0), own, {0, 0, 0});
     };
-    CHECK(added({0, 0, 0}, 0.0) == Approx(9.0));
-    CHECK(added({0, 0, 0}, 0.1) == Approx(13.0));
+    CHECK(added({0, 0, 0}, 0.0) == Approx(16.0 * 9.0));  // of a vertex that is slower, and what hangs on it
+    CHECK(added({0, 0, 0}, 0.1) == Approx(16.0 * 13.0));
     CHECK(added({50, 0, 0}, 0.0) == Approx(9.0));  // across: squares add
     CHECK(added({50, 0, 0}, 0.1) == Approx(9.0));  // friction slows
-    CHECK(added({0, 0, 2}, 0.0) == Approx(5.0));
-    CHECK(added({0, 0, -2}, 0.0) == Approx(5.0));
+    CHECK(added({0, 0, 2}, 0.0) == Approx(16.0 * 5.0));
+    CHECK(added({0, 0, -2}, 0.0) == Approx(16.0 * 5.0));
     CHECK(added({0, 0, -4}, 0.0) == 0.0);  // it loses
     CHECK(added({0, 0, 4}, 0.0) == 0.0);   // it is ahead
     CHECK(added_by_body(Contact<double>(Numbers{0, 0, 1, 0, 2, 0, 3, 0}, 0), {2, 0, 3}, {2, 0, 3}) == 0.0);
