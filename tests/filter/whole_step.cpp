@@ -206,6 +206,22 @@ TEST_CASE("a whole step: with far too few sub-steps a curtain gives way, gains n
     CHECK(greatest_energy < 0.01);  // J, 0 at the start
 }
 
+TEST_CASE("a whole step: mass that tension adds carries no motion", "[filter][whole_step]") {
+    // Five sub-steps and no more are far too few. With the motion of all that mass areas would grow by 1000 times.
+    MovingCloth cloth = flat_sheet(65, {0, 64});
+    StrainLimiter limiter(device().context, device().id, cloth.topology, with_ceiling);
+    const Parameters parameters{
+        .sub_steps = 5, .most_sub_steps = 5, .stretch_ceiling = 1.1f, .acceleration = {0.0f, -gravity, 0.0f}};
+    float greatest_change = 0.0f;
+    for (int frame = 0; frame < 90; ++frame) {
+        const Ended end = step_on_device(limiter, cloth, with_ceiling, parameters);
+        cloth.positions = end.positions;
+        cloth.velocities = end.velocities;
+        greatest_change = std::max(greatest_change, end.stats.max_area_change);
+    }
+    CHECK(greatest_change < 10.0f);
+}
+
 namespace {
 
 /// max |v| over all vertices, m/s.

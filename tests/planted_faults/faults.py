@@ -87,7 +87,7 @@ FAULTS = (
           catch("filter against the reference", *FILTER_TESTS, "stretch ceiling: the device agrees*"), r"FAILED"),
     Fault("stretch ceiling: added mass carries on with all its velocity",
           "kernels/effective_mass.h", "return fmin(1.0f, APSLK_AIMED_MASS_RATIO * effective / given);", "return 1.0f;",
-          catch("filter against the reference", *FILTER_TESTS, "a whole step: with far too few*"), r"FAILED"),
+          catch("filter against the reference", *FILTER_TESTS, "a whole step: mass that tension adds*"), r"FAILED"),
     Fault("a whole step: the step without a limit has the parts that the device raised",
           "kernels/free_motion.h", "max(parameters->given_small_steps, 1)", "max(parameters->small_steps, 1)",
           catch("filter against the reference", *FILTER_TESTS, "a whole step: where the limit is*"), r"FAILED"),
