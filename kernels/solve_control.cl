@@ -95,8 +95,7 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global const ap
     const float left_bent = sum_partials(partials, APSLK_PARTIAL_BENDING_LEFT, groups, scratch);
     const float energy = sum_partials(partials, APSLK_PARTIAL_ENERGY, groups, scratch);
     const float added_by_bodies = sum_partials(partials, APSLK_PARTIAL_ADDED_BY_BODIES, groups, scratch);
-#endif
-#if !APSLK_INTEGRATES
+#else
     (void)parameters;
 #endif
 #if APSLK_LIMITS_STRETCH

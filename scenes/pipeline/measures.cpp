@@ -86,12 +86,13 @@ std::vector<double> predicted_area_changes(const ClothState& cloth, double time_
 }
 
 double pinned_area_change(const ClothState& cloth) {
-    const std::vector<double> changes = area_changes(cloth);
     double greatest = 0.0;
-    for (std::size_t triangle = 0; triangle < changes.size(); ++triangle) {
-        const Triangle& corners = cloth.topology->triangles()[triangle];
-        if (std::ranges::all_of(corners, [&](std::uint32_t v) { return cloth.inverse_masses[v] == 0.0; }))
-            greatest = std::max(greatest, changes[triangle]);
+    for (std::size_t t = 0; t < cloth.rest_areas.size(); ++t) {
+        const Triangle& corners = cloth.topology->triangles()[t];
+        const double rest_area = cloth.rest_areas[t];
+        if (rest_area > 0.0 &&
+            std::ranges::all_of(corners, [&](std::uint32_t v) { return cloth.inverse_masses[v] == 0.0; }))
+            greatest = std::max(greatest, std::abs(triangle_area(cloth.positions, corners) - rest_area) / rest_area);
     }
     return greatest;
 }

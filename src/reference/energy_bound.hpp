@@ -22,11 +22,13 @@ namespace apsl::reference {
 struct Drive {
     Vector3<double> velocity = Vector3<double>::Zero();  ///< m/s, of the frame
     double pins = 0.0;                                   ///< m/s, of the pins there
+    double mass = 0.0;                                   ///< kg, of vertices that move
     double bodies = 0.0;                                 ///< kg m²/s², what bodies can add to Σ m |u|² there
 };
 
 /// m²/s²: what a body adds at most to the square of a vertex' velocity, both in the frame. It pushes along its normal
-/// up to its own speed there, and drags along its surface where there is friction.
+/// up to its own speed there, and drags along its surface where there is friction. A body that is faster than the
+/// vertex also sets in motion what hangs on it.
 template <class Real>
 double added_by_body(const Contact<Real>& contact, const Vector3<double>& velocity, const Vector3<double>& frame) {
     const Vector3<double> body = contact.velocity.template cast<double>() - frame, own = velocity - frame,
@@ -45,7 +47,7 @@ template <class Real>
 Drive drive(const Buffers<Real>& buffers, std::span<const Real> free) {
     Eigen::AlignedBox<double, 3> pins;
     Vector3<double> momentum = Vector3<double>::Zero();
-    double mass = 0.0;
+    Drive found;
     bool touches = false;
     const auto velocity = [&](std::size_t i) -> Vector3<double> { return position(free, i).template cast<double>(); };
     const auto contact = [&](std::size_t i) { return Contact<Real>(buffers.contacts, i); };
@@ -55,19 +57,26 @@ Drive drive(const Buffers<Real>& buffers, std::span<const Real> free) {
             continue;
         }
         momentum += velocity(i) / static_cast<double>(buffers.inverse_masses[i]);
-        mass += 1.0 / static_cast<double>(buffers.inverse_masses[i]);
+        found.mass += 1.0 / static_cast<double>(buffers.inverse_masses[i]);
         touches = touches || (!buffers.contacts.empty() && !contact(i).normal.isZero(Real(0)));
     }
-    Drive found;
-    if (!pins.isEmpty())
-        found = {pins.center(), 0.5 * pins.diagonal().norm(), 0.0};
-    else if (!touches && mass > 0.0)
-        found.velocity = momentum / mass;
+    if (!pins.isEmpty()) {
+        found.velocity = pins.center();
+        found.pins = 0.5 * pins.diagonal().norm();
+    } else if (!touches && found.mass > 0.0) {
+        found.velocity = momentum / found.mass;
+    }
     for (std::size_t i = 0; touches && i < buffers.inverse_masses.size(); ++i)
         if (buffers.inverse_masses[i] > Real(0) && !contact(i).normal.isZero(Real(0)))
             found.bodies +=
                 added_by_body(contact(i), velocity(i), found.velocity) / static_cast<double>(buffers.inverse_masses[i]);
     return found;
+}
+
+/// J, of all parts: what hinges held at the start, less what they held at the start of the last part of several.
+inline double bending_given(double at_start, double left, int parts) {
+    const double count = parts;
+    return std::max(at_start - (parts > 1 ? left : 0.0), 0.0) * count / std::max(count - 1.0, 1.0);
 }
 
 /// Pressures and tensions do no work but by what drives the cloth.
@@ -77,17 +86,14 @@ public:
     EnergyBound() = default;
     /// `free`: see drive().
     EnergyBound(const Buffers<Real>& buffers, std::span<const Real> free)
-        : inverse_masses_(buffers.inverse_masses), drive_(drive(buffers, free)), squares_(squares(free)) {
-        for (const Real inverse_mass : inverse_masses_)
-            if (inverse_mass > Real(0)) mass_ += 1.0 / static_cast<double>(inverse_mass);
-    }
+        : inverse_masses_(buffers.inverse_masses), drive_(drive(buffers, free)), squares_(squares(free)) {}
 
     /// What hinges gave, J.
-    void add_bending(double energy) { squares_ += 2.0 * std::max(energy, 0.0); }
+    void add_bending(double energy) { squares_ += 2.0 * energy; }
 
     /// Slows the whole cloth, in the frame of what drives it, where it has more energy than it may.
     void apply(std::span<Real> velocities) const {
-        const double allowed = std::sqrt(squares_) + drive_.pins * std::sqrt(mass_) + std::sqrt(drive_.bodies),
+        const double allowed = std::sqrt(squares_) + drive_.pins * std::sqrt(drive_.mass) + std::sqrt(drive_.bodies),
                      root = std::sqrt(squares(velocities));
         if (!(root > double{APSLK_ENERGY_LET_PASS} * allowed)) return;
         const auto kept = static_cast<Real>(allowed / root);
@@ -110,7 +116,7 @@ private:
 
     std::span<const Real> inverse_masses_;
     Drive drive_;
-    double squares_ = 0.0, mass_ = 0.0;
+    double squares_ = 0.0;
 };
 
 }  // namespace apsl::reference

@@ -369,9 +369,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             if (!moves) moved[n] = predicted[n];
         }
         if (limited) {
-            // Of all parts, by what the hinges hold at the start of the last.
-            const double count = parameters.small_steps, end = count > 1.0 ? bending.energy() : 0.0;
-            energy.add_bending((bending_energy - end) * count / std::max(count - 1.0, 1.0));
+            energy.add_bending(bending_given(bending_energy, bending.energy(), parameters.small_steps));
             energy.apply(velocities);
         }
         if (!all_finite<Real>(moved) || !all_finite<Real>(velocities)) return false;

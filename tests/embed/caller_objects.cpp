@@ -4,7 +4,7 @@
 #include "embed/c_views.hpp"
 #include "embed/opencl_calls.hpp"
 #include "embed/refusals.hpp"
-#include "support/device_cloth.hpp"
+#include "embed/small_limiter.hpp"
 
 #include <apsl/apsl.h>
 
@@ -16,15 +16,6 @@ using namespace apsl;
 using namespace apsl::test;
 
 namespace {
-
-const MovingCloth& cloth() {
-    static const MovingCloth made = moving_cloth(grid(5, 5, 1.0, 1.0, Diagonals::alternating), 1);
-    return made;
-}
-
-StrainLimiter limiter(const Options& options = {}) {
-    return {device().context, device().id, cloth().topology, options};
-}
 
 constexpr std::size_t room = 4096;  // bytes, enough for any buffer of cloth()
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "embed/refusals.hpp"
-#include "support/device_cloth.hpp"
+#include "embed/small_limiter.hpp"
 
 #include <catch2/catch.hpp>
 #include <functional>
@@ -8,19 +8,6 @@
 
 using namespace apsl;
 using namespace apsl::test;
-
-namespace {
-
-const MovingCloth& cloth() {
-    static const MovingCloth made = moving_cloth(grid(5, 5, 1.0, 1.0, Diagonals::alternating), 1);
-    return made;
-}
-
-StrainLimiter limiter(const Options& options = {}) {
-    return {device().context, device().id, cloth().topology, options};
-}
-
-}  // namespace
 
 TEST_CASE("the constructor refuses what it cannot build, in one line", "[embed]") {
     const auto options = [](const Options& o) { return [o] { limiter(o); }; };

@@ -4,8 +4,8 @@
 #include "host/overlaps.hpp"
 
 #include "embed/refusals.hpp"
+#include "embed/small_limiter.hpp"
 #include "kernels/constants.h"
-#include "support/device_cloth.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -17,15 +17,6 @@ using namespace apsl;
 using namespace apsl::test;
 
 namespace {
-
-const MovingCloth& cloth() {
-    static const MovingCloth made = moving_cloth(grid(5, 5, 1.0, 1.0, Diagonals::alternating), 1);
-    return made;
-}
-
-StrainLimiter limiter(const Options& options = {}, const BufferView& scratch = {}) {
-    return {device().context, device().id, cloth().topology, options, {}, scratch};
-}
 
 Owned<cl_mem> memory(std::size_t bytes) {
     cl_int status = CL_SUCCESS;

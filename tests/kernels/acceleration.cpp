@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "kernels/free_fall.hpp"
 #include "kernels/launch.hpp"
 #include "support/tolerances.hpp"
 
@@ -11,29 +12,9 @@ using namespace apsl::test;
 
 namespace {
 
-constexpr Parameters falling{
-    .sub_steps = 5, .acceleration = {1.0f, -9.81f, 0.5f}, .damping = 0.7f, .stepping = Stepping::small_steps};
-constexpr int parts = 4;
-
 Build accelerating(std::uint32_t work_group_size) {
     return {.work_group_size = work_group_size, .integrates = true, .acceleration_per_vertex = true};
 }
-
-// Of number n of a cloth's vectors: its velocity after `parts_taken` parts with nothing but acceleration and damping,
-// and how far it has moved.
-struct FreeNumber {
-    double velocity, moved = 0.0;
-
-    FreeNumber(const Cloth& cloth, std::size_t n, int parts_taken) : velocity(cloth.velocities[n]) {
-        const double duration = static_cast<double>(falling.time_step) / parts;
-        const double kept = std::exp(-static_cast<double>(falling.damping) * duration);
-        const double acceleration = static_cast<double>(falling.acceleration[n % 3]) + cloth.accelerations[n];
-        for (int part = 0; part < parts_taken; ++part) {
-            if (cloth.inverse_masses[n / 3] > 0.0) velocity = kept * (velocity + duration * acceleration);
-            moved += duration * velocity;
-        }
-    }
-};
 
 // Numbers of all vertices, and the sizes that round.
 struct Compared {
@@ -74,7 +55,7 @@ TEST_CASE("acceleration in predict_positions: each vertex has its own, which the
             Compared compared;
             for_each_number(
                 arrays, [&](const Cloth& cloth, std::size_t n, std::uint32_t place, std::size_t k, std::size_t) {
-                    compared.add(moved[place].s[k], cloth.positions[n] + FreeNumber(cloth, n, parts).moved, 0.1);
+                    compared.add(moved[place].s[k], cloth.positions[n] + FreeNumber(cloth, n, parts, true).moved, 0.1);
                 });
             compared.check();
         }
@@ -92,7 +73,7 @@ TEST_CASE("acceleration in start_small_steps and gather_displacements: part by p
             Compared compared;
             for_each_number(
                 arrays, [&](const Cloth& cloth, std::size_t n, std::uint32_t place, std::size_t k, std::size_t) {
-                    const FreeNumber want(cloth, n, parts_taken);
+                    const FreeNumber want(cloth, n, parts_taken, true);
                     compared.add(moved[place].s[k], cloth.positions[n] + want.moved, 0.1);
                     compared.add(motion[place].s[k], static_cast<double>(falling.time_step) * want.velocity, 0.1);
                 });
@@ -122,7 +103,7 @@ TEST_CASE("acceleration in store_step: a discarded call leaves free motion", "[s
     const std::vector<float> moved = arrays.caller_positions.read(), speed = arrays.caller_velocities.read();
     Compared ends, speeds;
     for_each_number(arrays, [&](const Cloth& cloth, std::size_t n, std::uint32_t, std::size_t k, std::size_t i) {
-        const FreeNumber want(cloth, n, parts);
+        const FreeNumber want(cloth, n, parts, true);
         ends.add(moved[positions.offset + i * positions.stride + k], cloth.positions[n] + want.moved, 0.1);
         speeds.add(speed[velocities.offset + i * velocities.stride + k], want.velocity, 1.0);
     });
@@ -139,20 +120,13 @@ TEST_CASE("acceleration in bend_hinges: where vertices were is found back by the
     const auto moments = [&](const std::vector<Cloth>& cloths, bool own) {
         Arrays arrays(cloths, Matrix::consistent, p, 2);
         std::vector<cl_float4> moved = arrays.moved.read(), motion(moved.size());
-        for_each_number(
-            arrays, [&](const Cloth& cloth, std::size_t n, std::uint32_t place, std::size_t k, std::size_t) {
-                const FreeNumber after = own ? FreeNumber(cloth, n, 1)
-                                             : FreeNumber(
-                                                   [&] {
-                                                       Cloth without = cloth;
-                                                       without.accelerations.assign(cloth.accelerations.size(), 0.0);
-                                                       return without;
-                                                   }(),
-                                                   n, 1);
-                moved[place].s[k] = static_cast<float>(cloth.positions[n] + after.moved);
-                motion[place].s[k] = static_cast<float>(static_cast<double>(p.time_step) * after.velocity);
-                motion[place].s[3] = moved[place].s[3];
-            });
+        for_each_number(arrays,
+                        [&](const Cloth& cloth, std::size_t n, std::uint32_t place, std::size_t k, std::size_t) {
+                            const FreeNumber after(cloth, n, 1, own);
+                            moved[place].s[k] = static_cast<float>(cloth.positions[n] + after.moved);
+                            motion[place].s[k] = static_cast<float>(static_cast<double>(p.time_step) * after.velocity);
+                            motion[place].s[3] = moved[place].s[3];
+                        });
         arrays.moved.write(moved);
         arrays.motion.write(motion);
         launch::bend_hinges(arrays,

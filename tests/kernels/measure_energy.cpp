@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "kernels/free_fall.hpp"
 #include "kernels/launch.hpp"
 #include "reference/energy_bound.hpp"
 #include "support/tolerances.hpp"
@@ -12,21 +13,10 @@ using namespace apsl::test;
 
 namespace {
 
-constexpr Parameters falling{
-    .sub_steps = 5, .acceleration = {1.0f, -9.81f, 0.5f}, .damping = 0.7f, .stepping = Stepping::small_steps};
-constexpr int parts = 4;
-
 /// Velocities at the end of a step of acceleration and damping alone.
-std::vector<double> free_velocities(const Cloth& cloth, bool own_accelerations) {
-    std::vector<double> free = cloth.velocities;
-    const double duration = static_cast<double>(falling.time_step) / parts;
-    const double kept = std::exp(-static_cast<double>(falling.damping) * duration);
-    for (std::size_t n = 0; n < free.size(); ++n) {
-        if (!(cloth.inverse_masses[n / 3] > 0.0)) continue;
-        const double acceleration =
-            static_cast<double>(falling.acceleration[n % 3]) + (own_accelerations ? cloth.accelerations[n] : 0.0);
-        for (int part = 0; part < parts; ++part) free[n] = kept * (free[n] + duration * acceleration);
-    }
+std::vector<double> free_velocities(const Cloth& cloth, bool own) {
+    std::vector<double> free;
+    for (std::size_t n = 0; n < cloth.velocities.size(); ++n) free.push_back(FreeNumber(cloth, n, parts, own).velocity);
     return free;
 }
 

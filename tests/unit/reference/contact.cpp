@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reference/contact.hpp"
 
-#include "unit/reference/sample_cloths.hpp"
+#include "unit/reference/stepped_sheet.hpp"
 
 #include <apsl/error.hpp>
 #include <apsl/reference.hpp>
@@ -25,36 +25,6 @@ std::vector<double> same_contacts(std::size_t vertices, const std::vector<double
     for (std::size_t v = 0; v < vertices; ++v) all.insert(all.end(), contact.begin(), contact.end());
     return all;
 }
-
-struct Sheet {
-    std::shared_ptr<const Topology> topology;
-    std::vector<double> positions, velocities, inverse_masses, rest_areas, rest_shapes, contacts;
-
-    explicit Sheet(std::uint32_t side) {
-        const Mesh mesh = grid(side, side, 1.0, 1.0, Diagonals::alternating);
-        topology = Topology::build(mesh.triangles, mesh.vertex_count());
-        positions = mesh.positions;
-        velocities.assign(positions.size(), 0.0);
-        rest_areas = areas<double>(*topology, positions);
-        rest_shapes = reference::rest_shapes<double>(*topology, positions);
-        inverse_masses = reference::inverse_masses<double>(*topology, rest_areas, 0.2);
-    }
-
-    Stats call(const Parameters& parameters, const Options& options) {
-        StrainLimiter limiter(topology, options);
-        limiter.enqueue(
-            {.positions = positions,
-             .velocities = velocities,
-             .inverse_masses = inverse_masses,
-             .rest_areas = rest_areas,
-             .regularization = {},
-             .rest_shapes = options.limits_stretch ? std::span<const double>(rest_shapes) : std::span<const double>(),
-             .contacts = contacts,
-             .end_positions = options.integrates ? std::span<double>(positions) : std::span<double>()},
-            parameters);
-        return limiter.read_stats();
-    }
-};
 
 constexpr Options stepping{.integrates = true, .keeps_contacts = true};
 constexpr Options filtering{.keeps_contacts = true};
@@ -111,7 +81,7 @@ TEST_CASE("contact: a body that moves takes along what sticks to it", "[contact]
 
 TEST_CASE("contact: in a whole step a sheet that falls on a floor lies on it and stays", "[contact][whole_step]") {
     for (const bool limits_stretch : {false, true}) {
-        Sheet sheet(9);
+        SteppedSheet sheet(9);
         sheet.contacts = same_contacts(sheet.topology->vertex_count(), {0, 1, 0, -0.3, 0, 0, 0, 0.3});
         Options options = stepping;
         options.limits_stretch = limits_stretch;
@@ -133,7 +103,7 @@ TEST_CASE("contact: in a whole step a sheet that falls on a floor lies on it and
 TEST_CASE("contact: a sheet slides down a slope as Coulomb says, and sticks below his angle", "[contact][whole_step]") {
     const double angle = 30.0 * pi / 180.0;
     for (const double friction : {0.0, 0.2, 0.5, 0.7}) {
-        Sheet sheet(5);
+        SteppedSheet sheet(5);
         const Vector normal(std::sin(angle), std::cos(angle), 0.0), along(std::cos(angle), -std::sin(angle), 0.0);
         for (std::size_t v = 0; v < sheet.topology->vertex_count(); ++v) {
             Eigen::Map<Vector> x(sheet.positions.data() + 3 * v);
@@ -158,7 +128,7 @@ TEST_CASE("contact: a sheet slides down a slope as Coulomb says, and sticks belo
 
 TEST_CASE("contact: a filter's velocities lead to the outside, whether its corrections stand or not", "[contact]") {
     for (const float target : {0.0f, 100.0f}) {
-        Sheet sheet(9);
+        SteppedSheet sheet(9);
         for (std::size_t v = 1; v < sheet.velocities.size(); v += 3) sheet.velocities[v] = -1.0;
         for (std::size_t v = 0; v < sheet.velocities.size(); v += 3) sheet.velocities[v] = sheet.positions[v];
         const std::vector<double> before = sheet.velocities;
@@ -185,7 +155,7 @@ TEST_CASE("contact: a filter's velocities lead to the outside, whether its corre
 }
 
 TEST_CASE("contact: a pinned vertex goes where it goes", "[contact][whole_step]") {
-    Sheet sheet(5);
+    SteppedSheet sheet(5);
     sheet.inverse_masses[0] = 0.0;
     sheet.velocities[1] = -1.0;
     sheet.contacts = same_contacts(sheet.topology->vertex_count(), {0, 1, 0, 0, 0, 0, 0, 0});
@@ -211,7 +181,7 @@ TEST_CASE("contact: what it needs", "[contact]") {
           "keeps_contacts is on, which needs execution many_groups");
     CHECK(message({}, {.positions_only = true, .keeps_contacts = true}) ==
           "keeps_contacts is on, which needs velocities: positions_only is on");
-    Sheet sheet(3);
+    SteppedSheet sheet(3);
     CHECK_THROWS_WITH(sheet.call({}, filtering), "contacts holds 0 numbers, expected 72");
     sheet.contacts = same_contacts(9, {0, 0, 1, 0, 0, 0, 0, 0});
     CHECK_THROWS_WITH(sheet.call({}, {}), "contacts holds 72 numbers, expected 0");
