@@ -12,14 +12,14 @@
 // Over vertices: what those that move carry where nothing but acceleration and damping acts, the box around the
 // velocities of pins, and whether anything may be touched.
 typedef struct {
-    float3 momentum;         // kg m/s
-    float mass;              // kg
-    float3 greatest, least;  // m/s; the greatest is below the least where there are no pins
-    float touches;           // 0 or 1
+    float3 momentum;                    // kg m/s
+    float mass;                         // kg
+    float3 greatest, greatest_reverse;  // m/s, of pins: u and -u; -FLT_MAX where there are none
+    float touches;                      // 0 or 1
 } apslk_drive_sums;
 
 APSLK_INLINE apslk_drive_sums no_drive(void) {
-    const apslk_drive_sums sums = {(float3)(0.0f), 0.0f, (float3)(-FLT_MAX), (float3)(FLT_MAX), 0.0f};
+    const apslk_drive_sums sums = {(float3)(0.0f), 0.0f, (float3)(-FLT_MAX), (float3)(-FLT_MAX), 0.0f};
     return sums;
 }
 
@@ -42,7 +42,7 @@ APSLK_INLINE void add_to_drive(apslk_drive_sums* sums, float3 velocity, float in
         if (may_touch(contacts, vertex)) sums->touches = 1.0f;
     } else {
         sums->greatest = fmax(sums->greatest, velocity);
-        sums->least = fmin(sums->least, velocity);
+        sums->greatest_reverse = fmax(sums->greatest_reverse, -velocity);  // Intel loses a running fmin
     }
 }
 
@@ -75,7 +75,7 @@ APSLK_INLINE void store_drive_partials(apslk_drive_sums sums, __global float* pa
     store_partial(partials, APSLK_PARTIAL_MASS, group_sum(sums.mass, scratch));
     store_partial_sums_xyz(partials, APSLK_PARTIAL_MOMENTUM, sums.momentum, scratch);
     store_partial_maxima_xyz(partials, APSLK_PARTIAL_GREATEST_PIN, sums.greatest, scratch);
-    store_partial_maxima_xyz(partials, APSLK_PARTIAL_LEAST_PIN, -sums.least, scratch);
+    store_partial_maxima_xyz(partials, APSLK_PARTIAL_LEAST_PIN, sums.greatest_reverse, scratch);
     store_partial(partials, APSLK_PARTIAL_TOUCHES, group_max(sums.touches, scratch));
 }
 
