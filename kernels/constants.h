@@ -77,6 +77,8 @@
 
 // What the root of a whole step's energy may be off by, which the discrete step is (docs/formulation.md, Energy).
 #define APSLK_ENERGY_LET_PASS 1.001f
+// A triangle is outside its limits where its area change, or its stretch over the ceiling, is above this.
+#define APSLK_UNMET 0.1f
 // What a body that is faster than a vertex sets in motion by it, in masses of the vertex.
 #define APSLK_PULLED_ALONG 16.0f
 

@@ -84,6 +84,7 @@ typedef struct {
     float3 velocity;  // m/s, of the frame
     float pins;       // m/s, of pins there
     float mass;       // kg, of vertices that move
+    bool flies;       // nothing holds it or may touch it
 } apslk_drive;
 
 // The frame is the middle of the box around the velocities of the pins. Of a cloth without pins it is its own mean
@@ -97,12 +98,13 @@ APSLK_INLINE apslk_drive find_drive(__global float* partials, uint groups, __loc
     const bool pinned = greatest.x >= least.x;
     apslk_drive drive;
     drive.mass = mass;
+    drive.flies = !pinned && !touches && mass > 0.0f;
     drive.velocity = (float3)(0.0f);
     drive.pins = 0.0f;
     if (pinned) {
         drive.velocity = 0.5f * least + 0.5f * greatest;
         drive.pins = length(0.5f * greatest - 0.5f * least);
-    } else if (!touches && mass > 0.0f) {
+    } else if (drive.flies) {
         drive.velocity = momentum / mass;
     }
     return drive;
@@ -137,11 +139,22 @@ APSLK_INLINE float bending_given(float at_start, float left, int parts) {
     return fmax(at_start - left, 0.0f) * count / fmax(count - 1.0f, 1.0f);
 }
 
-// The share of its velocity that a cloth keeps in the frame. Roots of Σ m |u|² there: `free`, with what hinges gave,
-// `driven` of all mass at the speed of what drives it, and `left` by the step.
-APSLK_INLINE float velocity_kept_by_energy(float free, float driven, float left) {
+typedef struct {
+    float unmet, met;
+} apslk_kept_shares;
+
+// The shares of their velocities in the frame that vertices at triangles outside their limits keep, and the others.
+// Roots of Σ m |u|² there: `free`, with what hinges gave, and `driven` of all mass at the speed of what drives it;
+// `unmet` and `met` are Σ m |u|² as the step left it. A cloth that `flies` keeps its momentum: it is slowed as a whole.
+APSLK_INLINE apslk_kept_shares shares_kept_by_energy(float free, float driven, float unmet, float met, bool flies) {
     const float allowed = free + driven;
-    return left > APSLK_ENERGY_LET_PASS * allowed ? allowed / left : 1.0f;
+    apslk_kept_shares kept = {1.0f, 1.0f};
+    if (unmet > 0.0f && sqrt(unmet + met) > APSLK_ENERGY_LET_PASS * allowed) {
+        const float share = allowed / sqrt(unmet + met);
+        kept.unmet = flies ? share : sqrt(fmax(allowed * allowed - met, 0.0f) / unmet);
+        kept.met = flies ? share : met > allowed * allowed ? allowed / sqrt(met) : 1.0f;
+    }
+    return kept;
 }
 
 #endif

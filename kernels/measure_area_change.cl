@@ -4,6 +4,7 @@
 #include "layout.h"
 #include "limits_stretch.h"
 #include "triangle_assembly.h"
+#include "unmet_limits.h"
 #include "work_group.h"
 
 #if APSLK_LIMITS_STRETCH
@@ -17,12 +18,15 @@ APSLK_INLINE float stretch_rows_at_work(apslk_cloth cloth, bool active, __global
 }
 #endif
 
-// What a call leaves behind, and the vertices that weighed more than given.
-// Moves 12 B indices, about 8 B positions, 4 B rest area read a triangle; with raised masses 32 B a vertex.
+// What a call leaves behind, and the vertices that weighed more than given; of a whole step the triangles that are
+// outside their limits, too.
+// Moves 12 B indices, about 8 B positions, 4 B rest area read a triangle; with raised masses 32 B a vertex. A whole
+// step moves as much again, 4 B start error and, with a ceiling, 20 B rest shape and 4 B excess read, and 4 B written.
 APSLK_KERNEL void measure_area_change(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
                                       __global float* partials, __global const uint* triangles,
                                       __global const float4* moved, __global const float4* motion,
-                                      __global const float* rest, __global const float* pressure) {
+                                      __global const float* rest, __global const float* pressure,
+                                      __global float* start_errors) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     store_area_partials(measure_triangles(cloths[c], parameters[c].enabled, triangles, moved, rest), partials, scratch);
@@ -31,6 +35,11 @@ APSLK_KERNEL void measure_area_change(__global const apslk_cloth* cloths, __glob
                   group_sum(stretch_rows_at_work(cloths[c], parameters[c].enabled, pressure), scratch));
 #else
     (void)pressure;
+#endif
+#if APSLK_INTEGRATES
+    mark_unmet(cloths[c], parameters[c].enabled, triangles, moved, rest, start_errors);
+#else
+    (void)start_errors;
 #endif
     const apslk_raised_masses raised = raised_masses(cloths[c], parameters[c].raises_masses, moved, motion);
     store_partial(partials, APSLK_PARTIAL_RAISED, group_sum(raised.count, scratch));

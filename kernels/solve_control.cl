@@ -93,7 +93,8 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global const ap
     const float free_energy = sum_partials(partials, APSLK_PARTIAL_FREE_ENERGY, groups, scratch);
     const float bent = sum_partials(partials, APSLK_PARTIAL_BENDING_ENERGY, groups, scratch);
     const float left_bent = sum_partials(partials, APSLK_PARTIAL_BENDING_LEFT, groups, scratch);
-    const float energy = sum_partials(partials, APSLK_PARTIAL_ENERGY, groups, scratch);
+    const float unmet_energy = sum_partials(partials, APSLK_PARTIAL_UNMET_ENERGY, groups, scratch);
+    const float met_energy = sum_partials(partials, APSLK_PARTIAL_MET_ENERGY, groups, scratch);
     const float added_by_bodies = sum_partials(partials, APSLK_PARTIAL_ADDED_BY_BODIES, groups, scratch);
 #else
     (void)parameters;
@@ -119,7 +120,10 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global const ap
 #if APSLK_INTEGRATES
     const float gave = bending_given(bent, left_bent, parameters[c].small_steps);
     const float driven = states[c].pins * sqrt(states[c].mass) + sqrt(added_by_bodies);
-    states[c].velocity_kept = velocity_kept_by_energy(sqrt(free_energy + 2.0f * gave), driven, sqrt(energy));
+    const apslk_kept_shares kept =
+        shares_kept_by_energy(sqrt(free_energy + 2.0f * gave), driven, unmet_energy, met_energy, states[c].flies);
+    states[c].unmet_kept = kept.unmet;
+    states[c].met_kept = kept.met;
 #endif
     if (stats[c].status == APSLK_STATUS_OFF) return;
     stats[c].raised_vertices = (uint)raised;

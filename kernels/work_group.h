@@ -70,7 +70,7 @@ APSLK_INLINE float group_sum(float value, __local float* scratch) {
         if (l < half_size) scratch[l] += scratch[l + half_size];
         barrier(CLK_LOCAL_MEM_FENCE);
     }
-    value = scratch[0];
+    value = *(volatile __local float*)scratch;
     barrier(CLK_LOCAL_MEM_FENCE);
 #else
     (void)scratch;
@@ -88,7 +88,7 @@ APSLK_INLINE float group_max(float value, __local float* scratch) {
         if (l < half_size) scratch[l] = fmax(scratch[l], scratch[l + half_size]);
         barrier(CLK_LOCAL_MEM_FENCE);
     }
-    value = scratch[0];
+    value = *(volatile __local float*)scratch;
     barrier(CLK_LOCAL_MEM_FENCE);
 #else
     (void)scratch;

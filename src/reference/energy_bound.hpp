@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 // What a whole step may leave of kinetic energy (docs/formulation.md, Energy).
@@ -24,6 +25,7 @@ struct Drive {
     double pins = 0.0;                                   ///< m/s, of the pins there
     double mass = 0.0;                                   ///< kg, of vertices that move
     double bodies = 0.0;                                 ///< kg m²/s², what bodies can add to Σ m |u|² there
+    bool flies = false;                                  ///< nothing holds it or may touch it
 };
 
 /// m²/s²: what a body adds at most to the square of a vertex' velocity, both in the frame. It pushes along its normal
@@ -65,6 +67,7 @@ Drive drive(const Buffers<Real>& buffers, std::span<const Real> free) {
         found.pins = 0.5 * pins.diagonal().norm();
     } else if (!touches && found.mass > 0.0) {
         found.velocity = momentum / found.mass;
+        found.flies = true;
     }
     for (std::size_t i = 0; touches && i < buffers.inverse_masses.size(); ++i)
         if (buffers.inverse_masses[i] > Real(0) && !contact(i).normal.isZero(Real(0)))
@@ -91,15 +94,27 @@ public:
     /// What hinges gave, J.
     void add_bending(double energy) { squares_ += 2.0 * energy; }
 
-    /// Slows the whole cloth, in the frame of what drives it, where it has more energy than it may.
-    void apply(std::span<Real> velocities) const {
-        const double allowed = std::sqrt(squares_) + drive_.pins * std::sqrt(drive_.mass) + std::sqrt(drive_.bodies),
-                     root = std::sqrt(squares(velocities));
-        if (!(root > double{APSLK_ENERGY_LET_PASS} * allowed)) return;
-        const auto kept = static_cast<Real>(allowed / root);
+    /// Where the cloth has more energy than it may, and some of it is outside its limits, slows that in the frame of
+    /// what drives the cloth, and the rest where that is not enough. A cloth that flies keeps its momentum: it is
+    /// slowed as a whole. `unmet`: 1 for a vertex at a triangle outside its limits, 0 for any other, [V].
+    void apply(std::span<Real> velocities, std::span<const std::uint8_t> unmet) const {
+        const double allowed = std::sqrt(squares_) + drive_.pins * std::sqrt(drive_.mass) + std::sqrt(drive_.bodies);
+        double unmet_squares = 0.0, met_squares = 0.0;
+        for (std::size_t i = 0; i < inverse_masses_.size(); ++i)
+            (unmet[i] != 0 ? unmet_squares : met_squares) += square(velocities, i);
+        if (!(unmet_squares > 0.0) ||
+            !(std::sqrt(unmet_squares + met_squares) > double{APSLK_ENERGY_LET_PASS} * allowed))
+            return;
+        const double left = allowed * allowed - met_squares, share = allowed / std::sqrt(unmet_squares + met_squares);
+        const double unmet_kept = drive_.flies ? share : std::sqrt(std::max(left, 0.0) / unmet_squares),
+                     met_kept = drive_.flies ? share
+                                : left < 0.0 ? allowed / std::sqrt(met_squares)
+                                             : 1.0;
         for (std::size_t n = 0; n < velocities.size(); ++n) {
+            if (!(inverse_masses_[n / 3] > Real(0))) continue;
             const auto frame = static_cast<Real>(drive_.velocity[static_cast<Eigen::Index>(n % 3)]);
-            if (inverse_masses_[n / 3] > Real(0)) velocities[n] = frame + kept * (velocities[n] - frame);
+            const auto kept = static_cast<Real>(unmet[n / 3] != 0 ? unmet_kept : met_kept);
+            if (kept < Real(1)) velocities[n] = frame + kept * (velocities[n] - frame);
         }
     }
 
@@ -107,11 +122,14 @@ private:
     /// Σ m |u|² in the frame of what drives the cloth, kg m²/s²: twice the kinetic energy.
     double squares(std::span<const Real> velocities) const {
         double sum = 0.0;
-        for (std::size_t i = 0; i < inverse_masses_.size(); ++i)
-            if (inverse_masses_[i] > Real(0))
-                sum += (position(velocities, i).template cast<double>() - drive_.velocity).squaredNorm() /
-                       static_cast<double>(inverse_masses_[i]);
+        for (std::size_t i = 0; i < inverse_masses_.size(); ++i) sum += square(velocities, i);
         return sum;
+    }
+
+    double square(std::span<const Real> velocities, std::size_t i) const {
+        if (!(inverse_masses_[i] > Real(0))) return 0.0;
+        return (position(velocities, i).template cast<double>() - drive_.velocity).squaredNorm() /
+               static_cast<double>(inverse_masses_[i]);
     }
 
     std::span<const Real> inverse_masses_;

@@ -45,6 +45,8 @@ public:
     StretchExcess measure(std::span<const Real> positions) const;
     /// Of triangle a: max(0, s₁ − ceiling).
     Real excess(std::size_t a, std::span<const Real> positions) const;
+    /// Likewise, at the start of the step.
+    Real start_excess(std::size_t a) const { return start_excess_[a]; }
 
     /// One solve at `positions`, whose triangles have `geometry` and lack `area_excess` (b, m²).
     void solve(std::span<const Real> positions, std::span<const TriangleGeometry<Real>> geometry,

@@ -286,6 +286,38 @@ TEST_CASE("measure_step: the whole step's areas, and how far they are off where 
         }
 }
 
+TEST_CASE("measure_area_change: of a whole step, what is or was outside its limits",
+          "[measure_area_change][whole_step][energy]") {
+    for (const std::uint32_t group : work_group_sizes()) {
+        CAPTURE(group);
+        const std::vector<Cloth> cloths{make_cloth(strip(131), 1), make_cloth(tetrahedron(), 2)};
+        Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
+        std::vector<float> errors = arrays.start_errors.read();
+        const auto was_outside = [](std::size_t a) { return a % 5 == 2; };
+        for (std::size_t c = 0; c < cloths.size(); ++c)
+            for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a)
+                errors[arrays.triangle_places[c][a]] =
+                    static_cast<float>((was_outside(a) ? -0.11 : 0.09) * cloths[c].rest_areas[a]);
+        arrays.start_errors.write(errors);
+        launch::measure_area_change(arrays, {.work_group_size = group, .integrates = true});
+        check_area_sums(arrays);
+        const std::vector<float> unmet = arrays.start_errors.read();
+        std::size_t outside = 0, inside = 0;
+        for (std::size_t c = 0; c < cloths.size(); ++c)
+            for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a) {
+                const double rest_area = cloths[c].rest_areas[a];
+                const double change =
+                    rest_area > 0.0 ? std::abs(arrays.solves[c].geometry[a].area / rest_area - 1.0) : 0.0;
+                if (std::abs(change - 0.1) < 1e-4) continue;
+                const bool want = rest_area > 0.0 && (was_outside(a) || change > 0.1);
+                CHECK(unmet[arrays.triangle_places[c][a]] == (want ? 1.0f : 0.0f));
+                ++(want ? outside : inside);
+            }
+        CHECK(outside > 10);
+        CHECK(inside > 10);
+    }
+}
+
 TEST_CASE("measure_area_change: what decides counts a triangle by at most 100 %", "[measure_area_change]") {
     Cloth cloth = make_cloth(grid(9, 9, 1.0, 1.0, Diagonals::random), 1);
     for (std::size_t a = 0; a < cloth.rest_areas.size(); a += 4)

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 using namespace apsl;
@@ -20,17 +21,23 @@ std::vector<double> free_velocities(const Cloth& cloth, bool own) {
     return free;
 }
 
-/// Σ m |u − frame|² of what can move.
-double squares(const Cloth& cloth, const std::vector<double>& velocities, const Eigen::Vector3d& frame) {
+/// Σ m |u − frame|² of what can move, of vertices that `counts` says.
+double squares(const Cloth& cloth, const std::vector<double>& velocities, const Eigen::Vector3d& frame,
+               const std::function<bool(std::size_t)>& counts) {
     double sum = 0.0;
     for (std::size_t n = 0; n < velocities.size(); ++n)
-        if (cloth.inverse_masses[n / 3] > 0.0)
+        if (cloth.inverse_masses[n / 3] > 0.0 && counts(n / 3))
             sum += std::pow(velocities[n] - frame[static_cast<Eigen::Index>(n % 3)], 2) / cloth.inverse_masses[n / 3];
     return sum;
 }
 
 double sum_of(const std::vector<double>& numbers) {
     return std::accumulate(numbers.begin(), numbers.end(), 0.0);
+}
+
+/// Triangles that are outside their limits.
+bool is_outside(std::size_t triangle) {
+    return triangle % 11 == 5;
 }
 
 /// Where small steps ended: Δt u, with the inverse mass, of random u that are returned, [3V] of all cloths.
@@ -53,7 +60,13 @@ void check_measured(const std::vector<Cloth>& cloths, const Build& build) {
     Arrays arrays(cloths, Matrix::consistent, falling, 3, false, {4, 3}, {5, 2});
     launch::predict_positions(arrays, build);
     const std::vector<double> velocities = end_small_steps(arrays);
+    std::vector<float> unmet = arrays.start_errors.read();
+    for (std::size_t c = 0; c < cloths.size(); ++c)
+        for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a)
+            unmet[arrays.triangle_places[c][a]] = is_outside(a) ? 1.0f : 0.0f;
+    arrays.start_errors.write(unmet);
     launch::measure_energy(arrays, build);
+    const std::vector<cl_float4> marked = arrays.total_correction.read();
     std::size_t first = 0;
     for (std::size_t c = 0; c < cloths.size(); ++c) {
         const Cloth& cloth = cloths[c];
@@ -76,14 +89,30 @@ void check_measured(const std::vector<Cloth>& cloths, const Build& build) {
         for (std::size_t k = 0; k < 3; ++k)
             CHECK(static_cast<double>(state.drive[k]) ==
                   Approx(want.velocity[static_cast<Eigen::Index>(k)]).margin(tolerance * size));
+        CHECK((state.flies != 0) == want.flies);
         CHECK(static_cast<double>(state.mass) == Approx(mass).epsilon(tolerance));
         CHECK(static_cast<double>(state.pins) == Approx(want.pins).epsilon(tolerance).margin(tolerance));
         CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_ADDED_BY_BODIES)) ==
               Approx(want.bodies).epsilon(tolerance).margin(tolerance));
         CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_FREE_ENERGY)) ==
-              Approx(squares(cloth, free, want.velocity)).epsilon(tolerance).margin(1e-6));
-        CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_ENERGY)) ==
-              Approx(squares(cloth, left, want.velocity)).epsilon(tolerance).margin(1e-6));
+              Approx(squares(cloth, free, want.velocity, [](std::size_t) { return true; }))
+                  .epsilon(tolerance)
+                  .margin(1e-6));
+        std::vector<bool> outside(cloth.topology->vertex_count(), false);
+        for (std::size_t a = 0; a < cloth.rest_areas.size(); ++a)
+            if (is_outside(a))
+                for (const std::uint32_t vertex : cloth.topology->triangles()[a]) outside[vertex] = true;
+        CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_UNMET_ENERGY)) ==
+              Approx(squares(cloth, left, want.velocity, [&](std::size_t v) { return outside[v]; }))
+                  .epsilon(tolerance)
+                  .margin(1e-6));
+        CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_MET_ENERGY)) ==
+              Approx(squares(cloth, left, want.velocity, [&](std::size_t v) { return !outside[v]; }))
+                  .epsilon(tolerance)
+                  .margin(1e-6));
+        for (std::size_t v = 0; v < outside.size(); ++v)
+            if (cloth.inverse_masses[v] > 0.0)
+                CHECK((marked[arrays.vertex_places[first + v]].s[3] > 0.0f) == outside[v]);
         CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_BENDING_ENERGY)) == 0.0);
         CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_BENDING_LEFT)) == 0.0);
         first += cloth.topology->vertex_count();

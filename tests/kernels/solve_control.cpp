@@ -95,26 +95,36 @@ TEST_CASE("end_call: greatest and RMS change of all groups", "[end_call]") {
     }
 }
 
-TEST_CASE("end_call: the share of its velocity that a whole step keeps", "[end_call][energy]") {
-    // Roots of Σ m |u|²: free 3, or with 8 J of hinges 5; left 10; of 4 kg at what pins have twice their speed.
+TEST_CASE("end_call: the shares of its velocities that a whole step keeps", "[end_call][energy]") {
+    // Roots of Σ m |u|²: free 3, or with 8 J of hinges 5; left 10, all of it outside its limits; of 4 kg at what pins
+    // have twice their speed.
     struct Given {
-        double bending = 0.0, bending_left = 0.0, bodies = 0.0, left = 100.0;
+        double bending = 0.0, bending_left = 0.0, bodies = 0.0, left = 100.0, met = 0.0;
+        bool flies = false;
         float pins = 0.0f;
     };
-    const auto kept = [](std::uint32_t group, const Given& given) {
+    const auto shares = [](std::uint32_t group, const Given& given) {
         Reported reported({.regularization = 1.2f, .sub_steps = 5, .stepping = Stepping::small_steps});
         reported.arrays.write_partials(0, APSLK_PARTIAL_FREE_ENERGY, {2.0, 0.0, 3.0, 4.0, 0.0});
         reported.arrays.write_partials(0, APSLK_PARTIAL_BENDING_ENERGY, {given.bending, 0.0, 0.0, 0.0, 0.0});
         reported.arrays.write_partials(0, APSLK_PARTIAL_BENDING_LEFT, {0.0, given.bending_left, 0.0, 0.0, 0.0});
-        reported.arrays.write_partials(0, APSLK_PARTIAL_ENERGY, {0.5 * given.left, 0.0, 0.0, 0.0, 0.5 * given.left});
+        reported.arrays.write_partials(0, APSLK_PARTIAL_UNMET_ENERGY,
+                                       {0.5 * given.left, 0.0, 0.0, 0.0, 0.5 * given.left});
+        reported.arrays.write_partials(0, APSLK_PARTIAL_MET_ENERGY, {0.0, given.met, 0.0, 0.0, 0.0});
         reported.arrays.write_partials(0, APSLK_PARTIAL_ADDED_BY_BODIES,
                                        {0.0, 0.25 * given.bodies, 0.0, 0.75 * given.bodies, 0.0});
         reported.arrays.edit_states([&](apslk_solve_state& state) {
             state.pins = given.pins;
             state.mass = 4.0f;
+            state.flies = given.flies;
         });
         launch::end_call(reported.arrays, {.work_group_size = group, .integrates = true});
-        return reported.state().velocity_kept;
+        return reported.state();
+    };
+    const auto kept = [&](std::uint32_t group, const Given& given) {
+        const apslk_solve_state state = shares(group, given);
+        CHECK(state.met_kept == 1.0f);
+        return state.unmet_kept;
     };
     for (const std::uint32_t group : work_group_sizes()) {
         CAPTURE(group);
@@ -129,6 +139,12 @@ TEST_CASE("end_call: the share of its velocity that a whole step keeps", "[end_c
         CHECK(kept(group, {.left = 8.0}) == 1.0f);
         CHECK(kept(group, {.left = 9.01}) == 1.0f);  // what is let pass
         CHECK(kept(group, {.left = infinity}) == 0.0f);
+        CHECK(kept(group, {.left = 0.0, .met = 100.0}) == 1.0f);  // within its limits
+        CHECK(kept(group, {.left = 100.0, .met = 5.0}) == Approx(0.2));
+        CHECK(shares(group, {.left = 100.0, .met = 36.0}).unmet_kept == 0.0f);
+        CHECK(shares(group, {.left = 100.0, .met = 36.0}).met_kept == Approx(0.5));
+        CHECK(shares(group, {.left = 80.0, .met = 20.0, .flies = true}).unmet_kept == Approx(0.3));
+        CHECK(shares(group, {.left = 80.0, .met = 20.0, .flies = true}).met_kept == Approx(0.3));
     }
 }
 

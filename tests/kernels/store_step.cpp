@@ -79,8 +79,12 @@ TEST_CASE("store_step: of too much energy a share is kept, in the frame of what 
         state.drive[0] = 1.0f;
         state.drive[1] = -2.0f;
         state.drive[2] = 3.0f;
-        state.velocity_kept = 0.25f;
+        state.unmet_kept = 0.25f;
+        state.met_kept = 0.5f;
     });
+    std::vector<cl_float4> unmet = arrays.total_correction.read();
+    for (std::size_t i = 0; i < unmet.size(); ++i) unmet[arrays.vertex_places[i]].s[3] = i % 3 == 0 ? 1.0f : 0.0f;
+    arrays.total_correction.write(unmet);
     const std::vector<cl_float4> moved = arrays.moved.read(), motion = arrays.motion.read();
     const std::vector<float> given = arrays.caller_velocities.read();
     launch::store_step(arrays, integrating());
@@ -94,7 +98,8 @@ TEST_CASE("store_step: of too much energy a share is kept, in the frame of what 
         }
         const std::uint32_t place = arrays.vertex_places[n / 3];
         const double velocity = static_cast<double>(motion[place].s[n % 3]) / static_cast<double>(falling.time_step);
-        CHECK(static_cast<double>(u[n]) == Approx(drive[n % 3] + 0.25 * (velocity - drive[n % 3])).margin(1e-5));
+        const double share = (n / 3) % 3 == 0 ? 0.25 : 0.5;
+        CHECK(static_cast<double>(u[n]) == Approx(drive[n % 3] + share * (velocity - drive[n % 3])).margin(1e-5));
         CHECK(x[n] == moved[place].s[n % 3]);  // positions are as they were corrected
     }
 }

@@ -16,6 +16,7 @@ using namespace apsl::test;
 namespace {
 
 using Numbers = std::vector<double>;
+using Flags = std::vector<std::uint8_t>;
 
 reference::Buffers<double> buffers(const Numbers& inverse_masses, const Numbers& contacts = {}) {
     return {.positions = {},
@@ -101,13 +102,36 @@ TEST_CASE("energy: a cloth at pins that stand still keeps at most that of the fr
     const EnergyBound<double> bound(buffers(inverse_masses), free);
     Numbers slower{0, 0, 0, 0, 2.9, 0}, faster{0, 0, 0, 0, 4, 3}, a_little{0, 0, 0, 0, 3.002, 0};
     const Numbers slower_before = slower, a_little_before = a_little;
-    bound.apply(slower);
+    bound.apply(slower, Flags{1, 1});
     CHECK(slower == slower_before);
-    bound.apply(a_little);
+    bound.apply(a_little, Flags{1, 1});
     CHECK(a_little == a_little_before);
-    bound.apply(faster);
+    Numbers within_limits = faster;
+    const Numbers faster_before = faster;
+    bound.apply(within_limits, Flags{0, 0});
+    CHECK(within_limits == faster_before);
+    bound.apply(faster, Flags{1, 1});
     CHECK(faster[4] == Approx(2.4));
     CHECK(faster[5] == Approx(1.8));
+}
+
+TEST_CASE("energy: what is outside its limits is slowed first, by hand", "[energy]") {
+    // Two vertices of 1 kg, Σ m |u|² = 25 + 0 at the free end.
+    const Numbers inverse_masses{0, 1, 1}, free{0, 0, 0, 5, 0, 0, 0, 0, 0};
+    const EnergyBound<double> bound(buffers(inverse_masses), free);
+    Numbers some{0, 0, 0, 4, 0, 0, 0, 12, 0}, all{0, 0, 0, 10, 0, 0, 0, 12, 0};
+    bound.apply(some, Flags{0, 0, 1});
+    CHECK(some[3] == 4.0);
+    CHECK(some[7] == Approx(3.0));
+    bound.apply(all, Flags{1, 0, 1});
+    CHECK(all[3] == Approx(5.0));
+    CHECK(all[7] == 0.0);
+    // In flight, about a mean of (2.5, 0, 0): 12.5 there, and 50 left.
+    const Numbers flying{1, 1}, flying_free{5, 0, 0, 0, 0, 0};
+    Numbers left{7.5, 0, 0, -2.5, 0, 0};
+    EnergyBound<double>(buffers(flying), flying_free).apply(left, Flags{1, 0});
+    CHECK(left[0] == Approx(5.0));
+    CHECK(left[3] == Approx(0.0).margin(1e-12));
 }
 
 TEST_CASE("energy: hinges give what they hold, and what drives a cloth what its speed is worth", "[energy]") {
@@ -116,19 +140,19 @@ TEST_CASE("energy: hinges give what they hold, and what drives a cloth what its 
     EnergyBound<double> bending(buffers(inverse_masses), free);
     bending.add_bending(16.0);
     Numbers faster{0, 0, 0, 0, 10, 0};
-    bending.apply(faster);
+    bending.apply(faster, Flags{0, 1});
     CHECK(faster[4] == Approx(5.0));
 
     // Pins of 0 and 2 m/s: a frame of 1 m/s, and 1 m/s there. A vertex at rest in it may have as much.
     const Numbers driven_masses{0, 0, 0.5};
     const EnergyBound<double> at_rest(buffers(driven_masses), Numbers{0, 0, 0, 2, 0, 0, 1, 0, 0});
     Numbers from_rest{0, 0, 0, 2, 0, 0, 11, 0, 0};
-    at_rest.apply(from_rest);
+    at_rest.apply(from_rest, Flags{1, 1, 1});
     CHECK(from_rest == Numbers{0, 0, 0, 2, 0, 0, 2, 0, 0});
     // At 8 m/s there, 1 m/s more.
     const EnergyBound<double> moving(buffers(driven_masses), Numbers{0, 0, 0, 2, 0, 0, 9, 0, 0});
     Numbers from_motion{0, 0, 0, 2, 0, 0, 18, 0, 0};
-    moving.apply(from_motion);
+    moving.apply(from_motion, Flags{1, 1, 1});
     CHECK(from_motion[6] == Approx(10.0));
 }
 
