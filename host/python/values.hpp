@@ -41,8 +41,8 @@ inline py::object without_numpy(py::handle object) {
 /// Throws Error(invalid_argument) that names the argument for a value of another type or out of the type's range.
 template <class Value>
 Value from_python(py::handle given, const std::string& argument) {
-    const std::string got = py::repr(given);
     const py::object object = without_numpy(given);
+    const std::string got = py::repr(object);  // numpy 2 would say np.int64(1)
     if constexpr (std::is_enum_v<Value>) {
         std::string expected;
         for (const auto& [value, name] : names_of<Value>) {

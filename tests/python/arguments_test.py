@@ -165,7 +165,7 @@ class Refused(unittest.TestCase):
             ({"sub_steps": np.True_}, "sub_steps: got True, expected an integer"),
             ({"sub_steps": np.float32(3)}, "sub_steps: got 3.0, expected an integer"),
             ({"sub_steps": np.float32(3.5)}, "sub_steps: got 3.5, expected an integer"),
-            ({"sub_steps": np.array(3.5)}, "sub_steps: got array(3.5), expected an integer"),
+            ({"sub_steps": np.array(3.5)}, "sub_steps: got 3.5, expected an integer"),
             ({"sub_steps": np.array([3])}, "sub_steps: got array([3]), expected an integer"),
             ({"sub_steps": np.int64(2**31)}, "sub_steps: got 2147483648, expected an integer"),
             ({"sub_steps": Decimal("3.5")}, "sub_steps: got Decimal('3.5'), expected an integer"),

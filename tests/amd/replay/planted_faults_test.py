@@ -23,7 +23,7 @@ TARGETS = {str(target): target for target in variants.TARGETS}
 HALVING = """        if (l < half_size) scratch[l] += scratch[l + half_size];
         barrier(CLK_LOCAL_MEM_FENCE);
     }
-    value = scratch[0];
+    value = *(volatile __local float*)scratch;
     barrier(CLK_LOCAL_MEM_FENCE);
 """
 GATHER = """gradients, residual, cloth.run, forces);
@@ -77,7 +77,7 @@ OUT_OF_BOUNDS = Fault(
 # The next sum overwrites what some waves have not read yet. Here they take the same decision by either.
 RESULT_NOT_READ_BY_ALL = Fault(
     "work_group.h", HALVING,
-    HALVING.replace("    value = scratch[0];\n    barrier(CLK_LOCAL_MEM_FENCE);\n", "    value = scratch[0];\n"),
+    HALVING.replace("    value = *(volatile __local float*)scratch;\n    barrier(CLK_LOCAL_MEM_FENCE);\n", "    value = *(volatile __local float*)scratch;\n"),
     "gradient", "matrix_free_apply_dot", "race: local memory")
 
 
