@@ -60,7 +60,8 @@ APSLK_INLINE void group_memory_barrier(void) {
 #define APSLK_SCRATCH __local float scratch[1]
 #endif
 
-// Sum over the work-group, given to every work-item. Halving, over a power of two fixed at compile time.
+// Sum over the work-group, given to every work-item. Halving, over a power of two fixed at compile time. The result is
+// read once, as volatile: pocl 7.1 reads it again where it is used, after other sums have been there.
 APSLK_INLINE float group_sum(float value, __local float* scratch) {
 #if APSLK_WORK_GROUP_SIZE > 1
     const uint l = (uint)get_local_id(0);

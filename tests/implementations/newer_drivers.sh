@@ -21,7 +21,7 @@ in_root() { chroot "$root" /usr/bin/env -i PATH=/usr/bin:/bin HOME=/root LANG=C.
 mounted=()
 leave() { for place in "${mounted[@]}"; do umount "$root/$place"; done; }
 trap leave EXIT
-for place in proc dev; do mount --bind "/$place" "$root/$place" && mounted=("$place" "${mounted[@]}"); done
+for place in proc sys dev; do mount --bind "/$place" "$root/$place" && mounted=("$place" "${mounted[@]}"); done
 
 in_root clinfo --raw | grep -E 'CL_PLATFORM_NAME|CL_DEVICE_NAME|CL_DRIVER_VERSION'
 mapfile -t tests < <(in_root /tests/apsl_kernel_tests "$selection" --list-test-names-only)
