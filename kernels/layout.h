@@ -149,17 +149,17 @@ typedef struct {
 #define APSLK_PARTIAL_MASS_RATIO 15     // their greatest mass over the one given
 #define APSLK_PARTIAL_EXTENT 16         // greatest |coordinate| at x̃ + Δt ṽ, m
 #define APSLK_PARTIAL_MAX_STRETCH 17
-#define APSLK_PARTIAL_MAX_EXCESS 18      // of stretch over the ceiling
-#define APSLK_PARTIAL_SQUARED_EXCESS 19  // the capped change has those of the excess too
-#define APSLK_PARTIAL_STRETCH_ROWS 20    // those with a multiplier above zero
-#define APSLK_PARTIAL_MASS 21            // kg, of vertices that can move
-#define APSLK_PARTIAL_MOMENTUM 22        // kg m/s, of those at the free end of the step; x, y and z
-#define APSLK_PARTIAL_GREATEST_PIN 25    // m/s, velocity; x, y and z
-#define APSLK_PARTIAL_LEAST_PIN 28       // likewise, with its sign turned
-#define APSLK_PARTIAL_TOUCHES 31         // whether a vertex may touch something
-#define APSLK_PARTIAL_FREE_ENERGY 32     // Σ m |u|² at the free end of the step, in the frame of what drives the cloth
-#define APSLK_PARTIAL_UNMET_ENERGY 33  // and as the small steps left it, of vertices at triangles outside their limits
-#define APSLK_PARTIAL_MET_ENERGY 34    // and of the others
+#define APSLK_PARTIAL_MAX_EXCESS 18       // of stretch over the ceiling
+#define APSLK_PARTIAL_SQUARED_EXCESS 19   // the capped change has those of the excess too
+#define APSLK_PARTIAL_STRETCH_ROWS 20     // those with a multiplier above zero
+#define APSLK_PARTIAL_MASS 21             // kg, of vertices that can move
+#define APSLK_PARTIAL_MOMENTUM 22         // kg m/s, of those at the free end of the step; x, y and z
+#define APSLK_PARTIAL_GREATEST_PIN 25     // m/s, velocity; x, y and z
+#define APSLK_PARTIAL_LEAST_PIN 28        // likewise, with its sign turned
+#define APSLK_PARTIAL_TOUCHES 31          // whether a vertex may touch something
+#define APSLK_PARTIAL_FREE_ENERGY 32      // Σ m |u|² at the free end of the step, in the frame of what drives the cloth
+#define APSLK_PARTIAL_UNMET_ENERGY 33     // and as the small steps left it, of vertices outside their limits
+#define APSLK_PARTIAL_MET_ENERGY 34       // and of the others
 #define APSLK_PARTIAL_ADDED_BY_BODIES 35  // kg m²/s², what bodies can add to Σ m |u|²
 #define APSLK_PARTIAL_BENDING_ENERGY 36   // J, at the start of the step
 #define APSLK_PARTIAL_BENDING_LEFT 37     // J, at the start of the last part of several

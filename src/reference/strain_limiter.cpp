@@ -18,6 +18,7 @@
 #include "reference/matrix.hpp"
 #include "reference/stretch_limiting.hpp"
 #include "reference/tethers.hpp"
+#include "reference/unmet_limits.hpp"
 
 #include "chebyshev_products.hpp"
 #include "fields.hpp"
@@ -357,22 +358,6 @@ struct BasicStrainLimiter<Real>::Implementation {
         if (sub_step + 1 < parts) begin_part(buffers, parameters, sub_step + 1);
     }
 
-    /// 1 for a vertex at a triangle that is outside its limits, or was at the start of the step, 0 for any other, [V].
-    std::vector<std::uint8_t> unmet_vertices(const Buffers<Real>& buffers) const {
-        constexpr Real most = APSLK_UNMET;
-        std::vector<std::uint8_t> unmet(topology->vertex_count(), 0);
-        for (std::size_t a = 0; a < geometry.size(); ++a) {
-            const Real rest_area = buffers.rest_areas[a];
-            if (!(rest_area > Real(0))) continue;
-            Real worst = std::max(std::abs(start_error[a]), std::abs(geometry[a].area - rest_area)) / rest_area;
-            if (options.limits_stretch)
-                worst = std::max({worst, stretches.start_excess(a), stretches.excess(a, moved)});
-            if (worst > most)
-                for (const std::uint32_t vertex : topology->triangles()[a]) unmet[vertex] = 1;
-        }
-        return unmet;
-    }
-
     /// Where a whole step ends and with what velocities, `limited` or by acceleration and damping alone; false, and
     /// nothing written, where a number is not finite. What pins a vertex moves it, and its velocity keeps every bit.
     bool write_step(const Buffers<Real>& buffers, const ResolvedParameters& parameters, bool limited) {
@@ -386,7 +371,12 @@ struct BasicStrainLimiter<Real>::Implementation {
         }
         if (limited) {
             energy.add_bending(bending_given(bending_energy, bending.energy(), parameters.small_steps));
-            energy.apply(velocities, unmet_vertices(buffers));
+            const auto excess = [&](std::size_t a) {
+                return options.limits_stretch ? std::max(stretches.start_excess(a), stretches.excess(a, moved))
+                                              : Real(0);
+            };
+            energy.apply(velocities,
+                         unmet_vertices<Real>(*topology, buffers.rest_areas, start_error, geometry, excess));
         }
         if (!all_finite<Real>(moved) || !all_finite<Real>(velocities)) return false;
         std::copy(moved.begin(), moved.end(), buffers.end_positions.begin());

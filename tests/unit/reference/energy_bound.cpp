@@ -165,9 +165,9 @@ TEST_CASE("energy: corrections of positions throw nothing about, and a free clot
         for (int call = 0; call < 4; ++call) {
             area_change = static_cast<double>(
                 cloth.call({.stretch_ceiling = 1.01f}, {.limits_stretch = true, .integrates = true}).max_area_change);
-            CHECK((cloth.mean_velocity() - velocity).norm() <= 1e-5);
-            // It would be 0.5 to 2 m/s. What is left comes from errors within the limits.
-            CHECK(cloth.greatest_own_speed() <= 0.1);
+            // Only the first call finds it outside its limits. Every vertex would have 0.5 to 2 m/s of its own.
+            CHECK((cloth.mean_velocity() - velocity).norm() <= (call == 0 ? 1e-9 : 1e-5));
+            CHECK(cloth.greatest_own_speed() <= (call == 0 ? 1e-6 : 0.1));
         }
         CHECK(area_change < 0.01);
     }
