@@ -204,7 +204,7 @@ const Kernel& measure_area_change(const Kernel& kernel, const Arrays& a, const A
 template <class Arrays>
 const Kernel& measure_energy(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.vertex_order, a.corner_offsets,
-                         a.corners, a.start_errors, a.motion, a.total_correction, caller.velocities,
+                         a.corners, a.start_errors, a.motion, a.total_correction, caller.positions, caller.velocities,
                          or_any(caller.contacts, caller), where_accelerated(a.accelerations, caller));
 }
 

@@ -24,6 +24,7 @@ static_assert(offsetof(Stats, status) == offsetof(apslk_stats, status));
 static_assert(offsetof(Stats, offender_index) == offsetof(apslk_stats, offender_index));
 static_assert(offsetof(Stats, greatest_mass_ratio) == offsetof(apslk_stats, greatest_mass_ratio));
 static_assert(offsetof(Stats, stretch_rows) == offsetof(apslk_stats, stretch_rows));
+static_assert(offsetof(Stats, energy_kept) == offsetof(apslk_stats, energy_kept));
 static_assert(std::has_single_bit(sizeof(apslk_parameters)), "clEnqueueFillBuffer takes powers of two");
 static_assert(static_cast<int>(Status::not_converged) == APSLK_STATUS_NOT_CONVERGED);
 static_assert(static_cast<int>(Status::worsened) == APSLK_STATUS_WORSENED);

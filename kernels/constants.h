@@ -75,8 +75,8 @@
 // Bends are those of positions this far on in the part, by the velocities of its start: a damping.
 #define APSLK_BENDING_LEAD 0.25f
 
-// What the root of a whole step's energy may be off by, which the discrete step is (docs/formulation.md, Energy).
-#define APSLK_ENERGY_LET_PASS 1.001f
+// What the energy of a whole step may be off by, which the discrete step is (docs/formulation.md, Energy).
+#define APSLK_ENERGY_LET_PASS 1.002f
 // A triangle is outside its limits where its area change, or its stretch over the ceiling, is above this.
 #define APSLK_UNMET 0.1f
 // What a body that is faster than a vertex sets in motion by it, in masses of the vertex.

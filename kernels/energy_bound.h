@@ -10,7 +10,7 @@
 #include "work_group.h"
 
 // Over vertices: what those that move carry where nothing but acceleration and damping acts, the box around the
-// velocities of pins, and whether anything may be touched.
+// velocities of pins, and whether anything is within reach.
 typedef struct {
     float3 momentum;                    // kg m/s
     float mass;                         // kg
@@ -23,23 +23,30 @@ APSLK_INLINE apslk_drive_sums no_drive(void) {
     return sums;
 }
 
-APSLK_INLINE bool may_touch(__global const float* contacts, uint vertex) {
+// Whether a vertex that ends the step at `x` with `velocity`, both free, comes within reach of its body: what the two
+// move by in a step at their speed against one another.
+APSLK_INLINE bool comes_near(float3 x, float3 velocity, float time_step, __global const float* contacts, uint vertex) {
 #if APSLK_KEEPS_CONTACTS
-    return any(vload4(2ul * vertex, contacts).xyz != 0.0f);
+    const float4 plane = vload4(2ul * vertex, contacts);
+    const float3 body = vload4(2ul * vertex + 1ul, contacts).xyz;
+    const float gap = dot(plane.xyz, x) - plane.w;
+    return any(plane.xyz != 0.0f) && gap <= time_step * length(velocity - body);
 #else
+    (void)x;
+    (void)velocity;
+    (void)time_step;
     (void)contacts;
     (void)vertex;
     return false;
 #endif
 }
 
-// `velocity`: at the end of the step, free.
-APSLK_INLINE void add_to_drive(apslk_drive_sums* sums, float3 velocity, float inverse_mass,
-                               __global const float* contacts, uint vertex) {
+// `velocity`: at the end of the step, free. `near`: see comes_near.
+APSLK_INLINE void add_to_drive(apslk_drive_sums* sums, float3 velocity, float inverse_mass, bool near) {
     if (inverse_mass > 0.0f) {
         sums->momentum += velocity / inverse_mass;
         sums->mass += 1.0f / inverse_mass;
-        if (may_touch(contacts, vertex)) sums->touches = 1.0f;
+        if (near) sums->touches = 1.0f;
     } else {
         sums->greatest = fmax(sums->greatest, velocity);
         sums->greatest_reverse = fmax(sums->greatest_reverse, -velocity);  // Intel loses a running fmin
@@ -84,11 +91,11 @@ typedef struct {
     float3 velocity;  // m/s, of the frame
     float pins;       // m/s, of pins there
     float mass;       // kg, of vertices that move
-    bool flies;       // nothing holds it or may touch it
+    bool flies;       // nothing holds it or is within its reach
 } apslk_drive;
 
 // The frame is the middle of the box around the velocities of the pins. Of a cloth without pins it is its own mean
-// velocity, or, where it may touch something, what stands still.
+// velocity, or, where something is within its reach, what stands still.
 APSLK_INLINE apslk_drive find_drive(__global float* partials, uint groups, __local float* scratch) {
     const float3 momentum = sum_partials_xyz(partials, APSLK_PARTIAL_MOMENTUM, groups, scratch);
     const float3 greatest = max_partials_xyz(partials, APSLK_PARTIAL_GREATEST_PIN, groups, scratch);
@@ -110,7 +117,7 @@ APSLK_INLINE apslk_drive find_drive(__global float* partials, uint groups, __loc
     return drive;
 }
 
-// m²/s²: what a body adds at most to the square of the velocity of the vertex that may touch it, both in the frame. It
+// m²/s²: what a body adds at most to the square of the velocity of the vertex near it, both in the frame. It
 // pushes along its normal up to its own speed there, and drags along its surface where there is friction. A body that
 // is faster than the vertex also sets in motion what hangs on it.
 APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const float* contacts, uint vertex) {
@@ -123,7 +130,7 @@ APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const f
     const float pushed = pushing > into ? fmax(pushing * pushing - into * into, 0.0f) : 0.0f;
     const float dragged = surface.w > 0.0f ? fmax(dot(drag, drag) - dot(slip, slip), 0.0f) : 0.0f;
     const float pulled = dot(body, body) > dot(own, own) ? APSLK_PULLED_ALONG : 1.0f;
-    return any(normal != 0.0f) ? pulled * (pushed + dragged) : 0.0f;
+    return pulled * (pushed + dragged);
 #else
     (void)velocity;
     (void)frame;
@@ -139,22 +146,46 @@ APSLK_INLINE float bending_given(float at_start, float left, int parts) {
     return fmax(at_start - left, 0.0f) * count / fmax(count - 1.0f, 1.0f);
 }
 
+// Σ m |u|² there, kg m²/s².
 typedef struct {
-    float unmet, met;
+    float free;                            // at the free end of the step, with what hinges gave
+    float pins;                            // of all mass at the speed of the pins
+    float bodies;                          // what bodies add
+    float unmet, met;                      // as the step left it, of vertices outside their limits and of the others
+    float gained_by_unmet, gained_by_met;  // of that, what vertices have more than at the free end
+} apslk_energies;
+
+// What vertices keep: a share of their velocities there, and of what they gained of energy.
+typedef struct {
+    float speed, unmet_gain, met_gain;
 } apslk_kept_shares;
 
-// The shares of their velocities in the frame that vertices at triangles outside their limits keep, and the others.
-// Roots of Σ m |u|² there: `free`, with what hinges gave, and `driven` of all mass at the speed of what drives it;
-// `unmet` and `met` are Σ m |u|² as the step left it. A cloth that `flies` keeps its momentum: it is slowed as a whole.
-APSLK_INLINE apslk_kept_shares shares_kept_by_energy(float free, float driven, float unmet, float met, bool flies) {
-    const float allowed = free + driven;
-    apslk_kept_shares kept = {1.0f, 1.0f};
-    if (unmet > 0.0f && sqrt(unmet + met) > APSLK_ENERGY_LET_PASS * allowed) {
-        const float share = allowed / sqrt(unmet + met);
-        kept.unmet = flies ? share : sqrt(fmax(allowed * allowed - met, 0.0f) / unmet);
-        kept.met = flies ? share : met > allowed * allowed ? allowed / sqrt(met) : 1.0f;
+// Pins bring a cloth to twice their speed at most.
+APSLK_INLINE float allowed_energy(apslk_energies of) {
+    const float free = sqrt(of.free), pins = sqrt(of.pins);
+    const float root = fmax(free, fmin(free + pins, 2.0f * pins)) + sqrt(of.bodies);
+    return root * root;
+}
+
+// A cloth that `flies` keeps its momentum: it is slowed as a whole.
+APSLK_INLINE apslk_kept_shares shares_kept_by_energy(apslk_energies of, float allowed, bool flies) {
+    apslk_kept_shares kept = {1.0f, 1.0f, 1.0f};
+    const float left = of.unmet + of.met, over = left - allowed;
+    if (!(of.unmet > 0.0f) || !(left > APSLK_ENERGY_LET_PASS * allowed)) return kept;
+    if (flies) {
+        kept.speed = sqrt(allowed / left);
+        return kept;
     }
+    kept.unmet_gain = over < of.gained_by_unmet ? 1.0f - over / of.gained_by_unmet : 0.0f;
+    kept.met_gain =
+        over > of.gained_by_unmet ? fmax(1.0f - (over - of.gained_by_unmet) / of.gained_by_met, 0.0f) : 1.0f;
     return kept;
+}
+
+// Of the velocity of a vertex, from squares of its speed there at the end and at the free end of the step.
+APSLK_INLINE float share_of_velocity(apslk_kept_shares kept, bool unmet, float square, float free_square) {
+    const float gain = unmet ? kept.unmet_gain : kept.met_gain;
+    return kept.speed * (square > free_square ? sqrt(gain + (1.0f - gain) * (free_square / square)) : 1.0f);
 }
 
 #endif

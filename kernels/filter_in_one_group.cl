@@ -154,6 +154,7 @@ APSLK_KERNEL void filter_in_one_group(
         if (off) stats->status = APSLK_STATUS_OFF;
         stats->raised_vertices = off ? 0u : (uint)raised_vertices;
         stats->greatest_mass_ratio = off ? 0.0f : mass_ratio;
+        stats->energy_kept = off ? 0.0f : 1.0f;
         states[c].discarded = broken || verdict.worse || sub_steps == 0;
     }
     group_memory_barrier();

@@ -92,6 +92,7 @@ typedef struct {
     float initial_max_stretch_excess;
     float initial_rms_stretch_excess;
     apslk_uint stretch_rows;
+    float energy_kept;
 } apslk_stats;
 
 #define APSLK_STATUS_OK 0
@@ -125,9 +126,10 @@ typedef struct {
     float drive[3];                  // m/s, the frame that the energy of a whole step is measured in
     float pins;                      // m/s, of pins there
     float mass;                      // kg, of vertices that move
-    apslk_int flies;                 // nothing holds the cloth or may touch it
-    float unmet_kept;                // share of its velocity there that a vertex at a triangle outside its limits keeps
-    float met_kept;                  // and any other
+    apslk_int flies;                 // nothing holds the cloth or is within its reach
+    float speed_kept;                // share of all velocities there
+    float unmet_gain_kept;           // of what a vertex at a triangle outside its limits gained of energy there
+    float met_gain_kept;             // and any other
 } apslk_solve_state;
 
 // Partial results of the work-groups of a launch, one float a group for each of these.
@@ -156,14 +158,16 @@ typedef struct {
 #define APSLK_PARTIAL_MOMENTUM 22         // kg m/s, of those at the free end of the step; x, y and z
 #define APSLK_PARTIAL_GREATEST_PIN 25     // m/s, velocity; x, y and z
 #define APSLK_PARTIAL_LEAST_PIN 28        // likewise, with its sign turned
-#define APSLK_PARTIAL_TOUCHES 31          // whether a vertex may touch something
+#define APSLK_PARTIAL_TOUCHES 31          // whether a body is within reach of a vertex
 #define APSLK_PARTIAL_FREE_ENERGY 32      // Σ m |u|² at the free end of the step, in the frame of what drives the cloth
 #define APSLK_PARTIAL_UNMET_ENERGY 33     // and as the small steps left it, of vertices outside their limits
 #define APSLK_PARTIAL_MET_ENERGY 34       // and of the others
 #define APSLK_PARTIAL_ADDED_BY_BODIES 35  // kg m²/s², what bodies can add to Σ m |u|²
 #define APSLK_PARTIAL_BENDING_ENERGY 36   // J, at the start of the step
 #define APSLK_PARTIAL_BENDING_LEFT 37     // J, at the start of the last part of several
-#define APSLK_PARTIAL_KINDS 38
+#define APSLK_PARTIAL_UNMET_GAIN 38       // of those energies, what vertices have more at the end than at the free end
+#define APSLK_PARTIAL_MET_GAIN 39
+#define APSLK_PARTIAL_KINDS 40
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSLK_TRIANGLE_ALIGNMENT 16

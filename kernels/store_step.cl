@@ -16,7 +16,7 @@ APSLK_KERNEL void store_step(__global const apslk_cloth* cloths, __global const 
                              ulong contact_offset APSLK_ACCELERATIONS_ARGUMENT) {
     const uint c = (uint)get_group_id(1);
     const bool active = parameters[c].enabled && stats[c].status != APSLK_STATUS_DIVERGED;
-    const apslk_kept_shares kept = {states[c].unmet_kept, states[c].met_kept};
+    const apslk_kept_shares kept = {states[c].speed_kept, states[c].unmet_gain_kept, states[c].met_gain_kept};
     store_end_of_step(cloths[c], active, !states[c].discarded, vload3(0, states[c].drive), kept,
                       parameters[c].time_step, free_step(parameters + c, APSLK_ACCELERATIONS), vertex_order, moved,
                       motion, total_correction, positions + position_offset, velocities + velocity_offset,

@@ -95,7 +95,7 @@ APSLK_INLINE apslk_vertex_sums predict_vertices(apslk_cloth cloth, bool active, 
         sums.extent = fmax(sums.extent, fmax(fabs(x.x), fmax(fabs(x.y), fabs(x.z))));
 #if APSLK_INTEGRATES
         const float3 velocity = after_free_step(free, place, load_velocity(velocities, i), w);
-        add_to_drive(&sums.drive, velocity, w, contacts, i);
+        add_to_drive(&sums.drive, velocity, w, comes_near(x.xyz, velocity, time_step, contacts, i));
 #endif
     }
     return sums;
@@ -332,9 +332,10 @@ APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited
             end_of_step(positions, velocities, place, i, step.w, time_step, free, contacts);
         const float3 free_after =
             unlimited.touches ? unlimited.motion * (1.0f / time_step) : after_free_step(free, place, before, step.w);
-        const float3 velocity = step.xyz * (1.0f / time_step);
-        const float share = unmet[place].w > 0.0f ? kept.unmet : kept.met;
-        const float3 limited_after = share < 1.0f ? drive + share * (velocity - drive) : velocity;
+        const float3 velocity = step.xyz * (1.0f / time_step), own = velocity - drive;
+        const float3 free_own = after_free_step(free, place, before, step.w) - drive;
+        const float share = share_of_velocity(kept, unmet[place].w > 0.0f, dot(own, own), dot(free_own, free_own));
+        const float3 limited_after = share < 1.0f ? drive + share * own : velocity;
         const float3 after = moves ? limited_after : free_after;
         const float3 x = moves ? end.xyz : unlimited.position;
         if (!all(isfinite(after)) || !all(isfinite(x))) continue;

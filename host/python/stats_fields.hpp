@@ -40,6 +40,7 @@ inline constexpr std::tuple stats_fields{
     StatsField{"initial_max_stretch_excess", &Stats::initial_max_stretch_excess},
     StatsField{"initial_rms_stretch_excess", &Stats::initial_rms_stretch_excess},
     StatsField{"stretch_rows", &Stats::stretch_rows},
+    StatsField{"energy_kept", &Stats::energy_kept},
 };
 
 }  // namespace apsl::python

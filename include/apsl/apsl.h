@@ -184,12 +184,14 @@ typedef struct apsl_stats {
     uint32_t offender_index;       /**< the first one, within its cloth */
     uint32_t raised_vertices;      /**< vertices that weighed more than given in the last sub-step */
     float greatest_mass_ratio;     /**< their greatest mass over the one given; 1 where none was raised */
-    float max_stretch;             /**< greatest principal stretch; this and what follows is 0 without limits_stretch */
-    float max_stretch_excess;      /**< greatest max(0, principal stretch - ceiling) of the state that stands */
-    float rms_stretch_excess;      /**< weighted with A0 */
+    float max_stretch;        /**< greatest principal stretch; this and the next five are 0 without limits_stretch */
+    float max_stretch_excess; /**< greatest max(0, principal stretch - ceiling) of the state that stands */
+    float rms_stretch_excess; /**< weighted with A0 */
     float initial_max_stretch_excess; /**< the greatest at x + dt v */
     float initial_rms_stretch_excess; /**< and the weighted RMS there */
     uint32_t stretch_rows;            /**< triangles that the ceiling held in the last sub-step */
+    float energy_kept; /**< the share of the cloth's kinetic energy, against what drives it, that the bound on energy
+                          left; 1 where it took none, and without integrates */
 } apsl_stats;
 
 /** What went wrong in this thread's last failed call: one line, empty before the first. Valid until the next one. */

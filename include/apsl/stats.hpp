@@ -46,14 +46,18 @@ struct Stats {
     /// them (docs/formulation.md, Effective masses).
     std::uint32_t raised_vertices;
     float greatest_mass_ratio;  ///< their greatest mass over the one given; 1 where none was raised
-    /// Greatest principal stretch of the state that stands; this and what follows is 0 without Options::limits_stretch.
+    /// Greatest principal stretch of the state that stands; this and the next five are 0 without
+    /// Options::limits_stretch.
     float max_stretch;
     float max_stretch_excess;          ///< greatest max(0, principal stretch − ceiling)
     float rms_stretch_excess;          ///< root of the mean of its squares, weighted with A⁰
     float initial_max_stretch_excess;  ///< the greatest at x̃ + Δt ṽ
     float initial_rms_stretch_excess;  ///< and the weighted RMS there
     std::uint32_t stretch_rows;        ///< triangles that the ceiling held in the last sub-step
+    /// The share of the cloth's kinetic energy, against what drives it, that the bound on energy left
+    /// (docs/formulation.md, Energy); 1 where it took none, and without Options::integrates.
+    float energy_kept;
 };
-static_assert(sizeof(Stats) == 72);
+static_assert(sizeof(Stats) == 76);
 
 }  // namespace apsl

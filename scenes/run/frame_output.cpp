@@ -48,9 +48,9 @@ void FrameOutput::finish() {
 }
 
 void check_no_input_in(const std::filesystem::path& folder, std::span<const InputFile> inputs) {
-    if (!std::filesystem::is_directory(folder)) return;
+    std::error_code unreadable;  // make_writable_folder says what is wrong with such a folder
     const std::string partial = partial_file("").string();
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
         std::string name = entry.path().filename().string();
         if (name.ends_with(partial)) name.resize(name.size() - partial.size());
         if (is_ours(name)) check_not_an_input(folder / name, inputs);

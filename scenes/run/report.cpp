@@ -25,6 +25,7 @@ void add_filter_notes(const Report& report, nlohmann::ordered_json& json) {
     json["greatest_mass_ratio"] = report.greatest_mass_ratio;
     json["max_stretch_excess"] = report.max_stretch_excess;
     json["stretch_rows"] = report.stretch_rows;
+    json["energy_kept"] = report.energy_kept;
     if (!report.worsened) return;
     json["worsened"] = {{"frame", report.worsened->frame},
                         {"step", report.worsened->step},
@@ -122,6 +123,8 @@ RunSummary summarize(const std::vector<FrameReport>& frames) {
         summary.greatest_mass_ratio = std::max(summary.greatest_mass_ratio, frame.greatest_mass_ratio);
         summary.max_stretch_excess = std::max(summary.max_stretch_excess, frame.max_stretch_excess);
         summary.stretch_rows = std::max(summary.stretch_rows, frame.stretch_rows);
+        summary.energy_kept = std::min(summary.energy_kept, frame.energy_kept);
+        if (frame.energy_kept < 1.0) ++summary.slowed_frames;
         if (frame.worsened && (!summary.worsened || frame.worsened->area_change > summary.worsened->area_change))
             summary.worsened = frame.worsened;
     }

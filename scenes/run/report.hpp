@@ -59,6 +59,7 @@ struct FrameReport {
     std::optional<WorsenedTriangle> worsened;  ///< the one that came to the greatest area change
     double max_stretch_excess = 0.0;           ///< over the stretch ceiling, after the filter
     std::uint32_t stretch_rows = 0;            ///< triangles that the ceiling held in the last sub-step
+    double energy_kept = 1.0;                  ///< least share of kinetic energy that the bound on it left
 };
 
 /// Where a simulation broke down.
@@ -133,6 +134,8 @@ struct RunSummary {
     std::optional<WorsenedTriangle> worsened;
     double max_stretch_excess = 0.0;
     std::uint32_t stretch_rows = 0;
+    double energy_kept = 1.0;
+    int slowed_frames = 0;  ///< in which the bound on energy slowed something
 };
 
 RunSummary summarize(const std::vector<FrameReport>& frames);

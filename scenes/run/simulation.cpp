@@ -47,6 +47,8 @@ void note_stats(const Stats& stats, int frame, int step, FrameReport& report) {
     report.greatest_mass_ratio = std::max(report.greatest_mass_ratio, static_cast<double>(stats.greatest_mass_ratio));
     report.max_stretch_excess = std::max(report.max_stretch_excess, static_cast<double>(stats.max_stretch_excess));
     report.stretch_rows = std::max(report.stretch_rows, stats.stretch_rows);
+    if (stats.status != Status::off)
+        report.energy_kept = std::min(report.energy_kept, static_cast<double>(stats.energy_kept));
     if (stats.status != Status::worsened || stats.offender != Offender::triangle) return;
     if (report.worsened && report.worsened->area_change >= stats.max_area_change) return;
     report.worsened = {frame, step, stats.offender_index, stats.max_area_change, stats.initial_max_area_change};

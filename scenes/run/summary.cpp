@@ -76,6 +76,12 @@ std::string summary_text(const RunReport& report) {
                        summary.collision_seconds_per_frame > 0.0 && !report.stand_alone ? ", before collisions" : "",
                        summary.stretch_rows, report.triangles);
     }
+    if (summary.slowed_frames > 0) {
+        text += format(
+            "  slowed                 in %d of %zu frames, down to %.2g of the kinetic energy: outside its limits the "
+            "cloth would have gained energy from nothing\n",
+            summary.slowed_frames, report.frames.size(), summary.energy_kept);
+    }
     if (report.over_stretch.count > 0) {
         const auto& [worst, why] = report.over_stretch.entries.front();
         text += format(

@@ -16,7 +16,11 @@ namespace {
 
 // Never put a file in the place of a device or a pipe, least of all as root.
 void check_is_plain(const std::filesystem::path& place) {
-    if (std::filesystem::exists(place) && !std::filesystem::is_regular_file(place))
+    std::error_code error;
+    const std::filesystem::file_type type = std::filesystem::status(place, error).type();
+    if (type == std::filesystem::file_type::none)
+        throw InputError(place.string() + ": cannot be written: " + error.message());
+    if (type != std::filesystem::file_type::not_found && type != std::filesystem::file_type::regular)
         throw InputError(place.string() + ": exists and is no plain file, expected a place for one");
 }
 
@@ -74,7 +78,8 @@ void WholeFile::check() const {
 
 void check_file_place(const std::filesystem::path& file) {
     if (!file.has_filename()) throw InputError("\"" + file.string() + "\": expected the name of a file");
-    if (!file.parent_path().empty() && !std::filesystem::is_directory(file.parent_path()))
+    std::error_code not_there;
+    if (!file.parent_path().empty() && !std::filesystem::is_directory(file.parent_path(), not_there))
         throw InputError(file.string() + ": no such folder, expected one that the file can be written to");
     check_is_plain(file);
     check_writable(file.parent_path(), file);
@@ -84,7 +89,7 @@ void make_writable_folder(const std::filesystem::path& folder) {
     if (folder.empty()) throw InputError("\"\": expected the name of a folder");
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error || !std::filesystem::is_directory(folder))
+    if (error || !std::filesystem::is_directory(folder, error))
         throw InputError(folder.string() + ": cannot be made a folder" + (error ? ": " + error.message() : ""));
     check_writable(folder, folder);
 }

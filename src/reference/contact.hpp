@@ -35,6 +35,12 @@ struct Contact {
         return std::max(offset - time_left * normal.dot(velocity) - normal.dot(x), Real(0));
     }
 
+    /// Whether a vertex that ends the step at x with `own` velocity, both free, comes within reach: what the two move
+    /// by in a step at their speed against one another.
+    bool comes_near(const Vector3<Real>& x, const Vector3<Real>& own, Real time_step) const {
+        return !normal.isZero(Real(0)) && normal.dot(x) - offset <= time_step * (own - velocity).norm();
+    }
+
     /// The share of a slip that friction takes where a speed `into` the body is taken as well, both m/s or both m:
     /// Coulomb's law.
     Real rubbed_share(Real slip, Real into) const {

@@ -15,9 +15,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 // What a whole step may leave of kinetic energy (docs/formulation.md, Energy).
 namespace apsl::reference {
+
+/// A step where nothing but acceleration and damping acts.
+template <class Real>
+struct FreeEnd {
+    std::span<const Real> positions;   ///< m, [3V]
+    std::span<const Real> velocities;  ///< m/s, [3V]
+    Real time_step;                    ///< s
+};
 
 /// What drives a cloth, and the frame that energies are measured in.
 struct Drive {
@@ -25,7 +34,7 @@ struct Drive {
     double pins = 0.0;                                   ///< m/s, of the pins there
     double mass = 0.0;                                   ///< kg, of vertices that move
     double bodies = 0.0;                                 ///< kg m²/s², what bodies can add to Σ m |u|² there
-    bool flies = false;                                  ///< nothing holds it or may touch it
+    bool flies = false;                                  ///< nothing holds it or is within its reach
 };
 
 /// m²/s²: what a body adds at most to the square of a vertex' velocity, both in the frame. It pushes along its normal
@@ -43,16 +52,21 @@ double added_by_body(const Contact<Real>& contact, const Vector3<double>& veloci
 }
 
 /// The frame is the middle of the box around the velocities of the pins, and they drive by half its diagonal. Of a
-/// cloth without pins it is its own mean velocity, or, where it may touch something, what stands still. `free`: m/s,
-/// [3V], velocities at the end of the step where nothing but acceleration and damping acts.
+/// cloth without pins it is its own mean velocity, or, where a body is within its reach, what stands still.
 template <class Real>
-Drive drive(const Buffers<Real>& buffers, std::span<const Real> free) {
+Drive drive(const Buffers<Real>& buffers, const FreeEnd<Real>& free) {
     Eigen::AlignedBox<double, 3> pins;
     Vector3<double> momentum = Vector3<double>::Zero();
     Drive found;
     bool touches = false;
-    const auto velocity = [&](std::size_t i) -> Vector3<double> { return position(free, i).template cast<double>(); };
-    const auto contact = [&](std::size_t i) { return Contact<Real>(buffers.contacts, i); };
+    const auto velocity = [&](std::size_t i) -> Vector3<double> {
+        return position(free.velocities, i).template cast<double>();
+    };
+    const auto is_near = [&](std::size_t i) {
+        return !buffers.contacts.empty() && buffers.inverse_masses[i] > Real(0) &&
+               Contact<Real>(buffers.contacts, i)
+                   .comes_near(position(free.positions, i), position(free.velocities, i), free.time_step);
+    };
     for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i) {
         if (!(buffers.inverse_masses[i] > Real(0))) {
             pins.extend(velocity(i));
@@ -60,7 +74,7 @@ Drive drive(const Buffers<Real>& buffers, std::span<const Real> free) {
         }
         momentum += velocity(i) / static_cast<double>(buffers.inverse_masses[i]);
         found.mass += 1.0 / static_cast<double>(buffers.inverse_masses[i]);
-        touches = touches || (!buffers.contacts.empty() && !contact(i).normal.isZero(Real(0)));
+        touches = touches || is_near(i);
     }
     if (!pins.isEmpty()) {
         found.velocity = pins.center();
@@ -70,9 +84,9 @@ Drive drive(const Buffers<Real>& buffers, std::span<const Real> free) {
         found.flies = true;
     }
     for (std::size_t i = 0; touches && i < buffers.inverse_masses.size(); ++i)
-        if (buffers.inverse_masses[i] > Real(0) && !contact(i).normal.isZero(Real(0)))
-            found.bodies +=
-                added_by_body(contact(i), velocity(i), found.velocity) / static_cast<double>(buffers.inverse_masses[i]);
+        if (is_near(i))
+            found.bodies += added_by_body(Contact<Real>(buffers.contacts, i), velocity(i), found.velocity) /
+                            static_cast<double>(buffers.inverse_masses[i]);
     return found;
 }
 
@@ -82,50 +96,57 @@ inline double bending_given(double at_start, double left, int parts) {
     return std::max(at_start - (parts > 1 ? left : 0.0), 0.0) * count / std::max(count - 1.0, 1.0);
 }
 
-/// Pressures and tensions do no work but by what drives the cloth.
+/// Pressures and tensions do no work but by what drives the cloth, and pins bring it to twice their speed at most.
 template <class Real>
 class EnergyBound {
 public:
     EnergyBound() = default;
-    /// `free`: see drive().
-    EnergyBound(const Buffers<Real>& buffers, std::span<const Real> free)
-        : inverse_masses_(buffers.inverse_masses), drive_(drive(buffers, free)), squares_(squares(free)) {}
+    EnergyBound(const Buffers<Real>& buffers, const FreeEnd<Real>& free)
+        : inverse_masses_(buffers.inverse_masses), drive_(drive(buffers, free)), free_(inverse_masses_.size()) {
+        for (std::size_t i = 0; i < free_.size(); ++i) free_[i] = square(free.velocities, i);
+    }
 
     /// What hinges gave, J.
-    void add_bending(double energy) { squares_ += 2.0 * energy; }
+    void add_bending(double energy) { bending_ += 2.0 * energy; }
 
-    /// Where the cloth has more energy than it may, and some of it is outside its limits, slows that in the frame of
-    /// what drives the cloth, and the rest where that is not enough. A cloth that flies keeps its momentum: it is
-    /// slowed as a whole. `unmet`: 1 for a vertex at a triangle outside its limits, 0 for any other, [V].
-    void apply(std::span<Real> velocities, std::span<const std::uint8_t> unmet) const {
-        const double allowed = std::sqrt(squares_) + drive_.pins * std::sqrt(drive_.mass) + std::sqrt(drive_.bodies);
-        double unmet_squares = 0.0, met_squares = 0.0;
-        for (std::size_t i = 0; i < inverse_masses_.size(); ++i)
-            (unmet[i] != 0 ? unmet_squares : met_squares) += square(velocities, i);
-        if (!(unmet_squares > 0.0) ||
-            !(std::sqrt(unmet_squares + met_squares) > double{APSLK_ENERGY_LET_PASS} * allowed))
-            return;
-        const double left = allowed * allowed - met_squares, share = allowed / std::sqrt(unmet_squares + met_squares);
-        const double unmet_kept = drive_.flies ? share : std::sqrt(std::max(left, 0.0) / unmet_squares),
-                     met_kept = drive_.flies ? share
-                                : left < 0.0 ? allowed / std::sqrt(met_squares)
-                                             : 1.0;
-        for (std::size_t n = 0; n < velocities.size(); ++n) {
-            if (!(inverse_masses_[n / 3] > Real(0))) continue;
-            const auto frame = static_cast<Real>(drive_.velocity[static_cast<Eigen::Index>(n % 3)]);
-            const auto kept = static_cast<Real>(unmet[n / 3] != 0 ? unmet_kept : met_kept);
-            if (kept < Real(1)) velocities[n] = frame + kept * (velocities[n] - frame);
+    /// Where the cloth has more energy than it may, and some of it is outside its limits, takes from vertices there
+    /// what they gained over the step without a limit, and from the others where that is not enough. A cloth that flies
+    /// keeps its momentum: it is slowed as a whole, in the frame of what drives it. `unmet`: 1 for a vertex at a
+    /// triangle outside its limits, 0 for any other, [V]. Returns the share of the cloth's energy there that is left.
+    double apply(std::span<Real> velocities, std::span<const std::uint8_t> unmet) const {
+        std::vector<double> squares(free_.size());
+        double free = bending_, all = 0.0, of_unmet = 0.0, gained_unmet = 0.0, gained_met = 0.0;
+        for (std::size_t i = 0; i < free_.size(); ++i) {
+            squares[i] = square(velocities, i);
+            free += free_[i];
+            all += squares[i];
+            if (unmet[i] != 0) of_unmet += squares[i];
+            (unmet[i] != 0 ? gained_unmet : gained_met) += std::max(squares[i] - free_[i], 0.0);
         }
+        const double pins = drive_.pins * std::sqrt(drive_.mass), root = std::sqrt(free);
+        const double allowed =
+            std::pow(std::max(root, std::min(root + pins, 2.0 * pins)) + std::sqrt(drive_.bodies), 2);
+        if (!(of_unmet > 0.0) || !(all > double{APSLK_ENERGY_LET_PASS} * allowed)) return 1.0;
+        const double over = all - allowed;
+        const double unmet_share = over < gained_unmet ? 1.0 - over / gained_unmet : 0.0,
+                     met_share = over > gained_unmet ? std::max(1.0 - (over - gained_unmet) / gained_met, 0.0) : 1.0;
+        for (std::size_t i = 0; i < free_.size(); ++i) {
+            const double gain = unmet[i] != 0 ? unmet_share : met_share;
+            double share = 1.0;
+            if (drive_.flies)
+                share = std::sqrt(allowed / all);
+            else if (squares[i] > free_[i])
+                share = std::sqrt(gain + (1.0 - gain) * free_[i] / squares[i]);
+            const auto kept = static_cast<Real>(share);
+            Eigen::Map<Vector3<Real>> velocity(velocities.data() + 3 * i);
+            const Vector3<Real> frame = drive_.velocity.template cast<Real>();
+            if (inverse_masses_[i] > Real(0) && kept < Real(1)) velocity = frame + kept * (velocity - frame);
+        }
+        return allowed / all;
     }
 
 private:
-    /// Σ m |u|² in the frame of what drives the cloth, kg m²/s²: twice the kinetic energy.
-    double squares(std::span<const Real> velocities) const {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < inverse_masses_.size(); ++i) sum += square(velocities, i);
-        return sum;
-    }
-
+    /// m |u|² in the frame of what drives the cloth, kg m²/s², of a vertex that can move: twice its kinetic energy.
     double square(std::span<const Real> velocities, std::size_t i) const {
         if (!(inverse_masses_[i] > Real(0))) return 0.0;
         return (position(velocities, i).template cast<double>() - drive_.velocity).squaredNorm() /
@@ -134,7 +155,8 @@ private:
 
     std::span<const Real> inverse_masses_;
     Drive drive_;
-    double squares_ = 0.0;
+    std::vector<double> free_;  ///< at the end of the step without a limit, [V]
+    double bending_ = 0.0;
 };
 
 }  // namespace apsl::reference

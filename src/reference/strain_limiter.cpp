@@ -102,7 +102,7 @@ struct BasicStrainLimiter<Real>::Implementation {
             for (std::size_t n = 0; n < unlimited.size(); ++n)
                 unlimited[n] = free.end(buffers.velocities[n], n, buffers.inverse_masses);
         }
-        if (options.integrates) energy = EnergyBound<Real>(buffers, unlimited);
+        if (options.integrates) energy = EnergyBound<Real>(buffers, {predicted, unlimited, time_step});
         if (options.keeps_contacts)
             for (std::size_t i = 0; i < buffers.inverse_masses.size(); ++i)
                 if (buffers.inverse_masses[i] > Real(0)) keep_end(i, buffers, time_step);
@@ -375,8 +375,8 @@ struct BasicStrainLimiter<Real>::Implementation {
                 return options.limits_stretch ? std::max(stretches.start_excess(a), stretches.excess(a, moved))
                                               : Real(0);
             };
-            energy.apply(velocities,
-                         unmet_vertices<Real>(*topology, buffers.rest_areas, start_error, geometry, excess));
+            stats.energy_kept = static_cast<float>(energy.apply(
+                velocities, unmet_vertices<Real>(*topology, buffers.rest_areas, start_error, geometry, excess)));
         }
         if (!all_finite<Real>(moved) || !all_finite<Real>(velocities)) return false;
         std::copy(moved.begin(), moved.end(), buffers.end_positions.begin());
@@ -473,6 +473,7 @@ struct BasicStrainLimiter<Real>::Implementation {
         stats = {};
         stats.status = Status::diverged;
         stats.greatest_mass_ratio = 1.0f;
+        stats.energy_kept = 1.0f;
         predict(buffers, parameters);
         if (!all_finite<Real>(predicted)) return name_offender(Offender::vertex, first_bad_vertex<Real>(predicted));
         if (options.limits_stretch) stretches.start(*topology, buffers, static_cast<Real>(parameters.stretch_ceiling));

@@ -14,12 +14,18 @@ using namespace apsl::test;
 
 namespace {
 
-/// Velocities at the end of a step of acceleration and damping alone.
-std::vector<double> free_velocities(const Cloth& cloth, bool own) {
-    std::vector<double> free;
-    for (std::size_t n = 0; n < cloth.velocities.size(); ++n) free.push_back(FreeNumber(cloth, n, parts, own).velocity);
-    return free;
-}
+/// The end of a step of acceleration and damping alone.
+struct Free {
+    std::vector<double> positions, velocities;
+
+    Free(const Cloth& cloth, bool own) {
+        for (std::size_t n = 0; n < cloth.velocities.size(); ++n) {
+            const FreeNumber number(cloth, n, parts, own);
+            positions.push_back(cloth.positions[n] + number.moved);
+            velocities.push_back(number.velocity);
+        }
+    }
+};
 
 /// Σ m |u − frame|² of what can move, of vertices that `counts` says.
 double squares(const Cloth& cloth, const std::vector<double>& velocities, const Eigen::Vector3d& frame,
@@ -71,7 +77,7 @@ void check_measured(const std::vector<Cloth>& cloths, const Build& build) {
     for (std::size_t c = 0; c < cloths.size(); ++c) {
         const Cloth& cloth = cloths[c];
         CAPTURE(build.work_group_size, build.keeps_contacts, build.acceleration_per_vertex, c);
-        const std::vector<double> free = free_velocities(cloth, build.acceleration_per_vertex);
+        const Free free(cloth, build.acceleration_per_vertex);
         const reference::Drive want = reference::drive<double>(
             {.positions = {},
              .velocities = {},
@@ -79,9 +85,10 @@ void check_measured(const std::vector<Cloth>& cloths, const Build& build) {
              .rest_areas = {},
              .regularization = {},
              .contacts = build.keeps_contacts ? std::span<const double>(cloth.contacts) : std::span<const double>()},
-            free);
+            {free.positions, free.velocities, static_cast<double>(falling.time_step)});
+        const std::size_t count = free.velocities.size();
         const std::vector<double> left(velocities.begin() + static_cast<std::ptrdiff_t>(3 * first),
-                                       velocities.begin() + static_cast<std::ptrdiff_t>(3 * first + free.size()));
+                                       velocities.begin() + static_cast<std::ptrdiff_t>(3 * first + count));
         double mass = 0.0;
         for (const double w : cloth.inverse_masses) mass += w > 0.0 ? 1.0 / w : 0.0;
         const double tolerance = 1e-4, size = 30.0;
@@ -95,7 +102,7 @@ void check_measured(const std::vector<Cloth>& cloths, const Build& build) {
         CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_ADDED_BY_BODIES)) ==
               Approx(want.bodies).epsilon(tolerance).margin(tolerance));
         CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_FREE_ENERGY)) ==
-              Approx(squares(cloth, free, want.velocity, [](std::size_t) { return true; }))
+              Approx(squares(cloth, free.velocities, want.velocity, [](std::size_t) { return true; }))
                   .epsilon(tolerance)
                   .margin(1e-6));
         std::vector<bool> outside(cloth.topology->vertex_count(), false);
@@ -113,6 +120,22 @@ void check_measured(const std::vector<Cloth>& cloths, const Build& build) {
         for (std::size_t v = 0; v < outside.size(); ++v)
             if (cloth.inverse_masses[v] > 0.0)
                 CHECK((marked[arrays.vertex_places[first + v]].s[3] > 0.0f) == outside[v]);
+        // Random motion: about half of the vertices gained.
+        const auto gained = [&](bool by_unmet) {
+            double sum = 0.0;
+            for (std::size_t v = 0; v < outside.size(); ++v) {
+                const auto one = [&](std::size_t i) { return i == v; };
+                if (outside[v] == by_unmet)
+                    sum += std::max(
+                        squares(cloth, left, want.velocity, one) - squares(cloth, free.velocities, want.velocity, one),
+                        0.0);
+            }
+            return sum;
+        };
+        CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_UNMET_GAIN)) ==
+              Approx(gained(true)).epsilon(tolerance).margin(1e-6));
+        CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_MET_GAIN)) ==
+              Approx(gained(false)).epsilon(tolerance).margin(1e-6));
         CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_BENDING_ENERGY)) == 0.0);
         CHECK(sum_of(arrays.partials_of(c, APSLK_PARTIAL_BENDING_LEFT)) == 0.0);
         first += cloth.topology->vertex_count();

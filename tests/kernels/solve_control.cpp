@@ -95,56 +95,78 @@ TEST_CASE("end_call: greatest and RMS change of all groups", "[end_call]") {
     }
 }
 
-TEST_CASE("end_call: the shares of its velocities that a whole step keeps", "[end_call][energy]") {
-    // Roots of Σ m |u|²: free 3, or with 8 J of hinges 5; left 10, all of it outside its limits; of 4 kg at what pins
-    // have twice their speed.
+TEST_CASE("end_call: what a whole step keeps of the energy that vertices gained", "[end_call][energy]") {
+    // Σ m |u|²: free 9, or with 8 J of hinges 25; left 100, all of it outside its limits, of which 95 are gains; of 4
+    // kg at what pins have twice their speed.
     struct Given {
-        double bending = 0.0, bending_left = 0.0, bodies = 0.0, left = 100.0, met = 0.0;
+        double bending = 0.0, bending_left = 0.0, bodies = 0.0, left = 100.0, gained = 95.0, met = 0.0,
+               met_gained = 0.0;
         bool flies = false;
         float pins = 0.0f;
+        int solves = 5;
     };
-    const auto shares = [](std::uint32_t group, const Given& given) {
+    struct Ended {
+        apslk_solve_state kept;
+        float energy;
+    };
+    const auto ended = [](std::uint32_t group, const Given& given) {
         Reported reported({.regularization = 1.2f, .sub_steps = 5, .stepping = Stepping::small_steps});
-        reported.arrays.write_partials(0, APSLK_PARTIAL_FREE_ENERGY, {2.0, 0.0, 3.0, 4.0, 0.0});
-        reported.arrays.write_partials(0, APSLK_PARTIAL_BENDING_ENERGY, {given.bending, 0.0, 0.0, 0.0, 0.0});
-        reported.arrays.write_partials(0, APSLK_PARTIAL_BENDING_LEFT, {0.0, given.bending_left, 0.0, 0.0, 0.0});
-        reported.arrays.write_partials(0, APSLK_PARTIAL_UNMET_ENERGY,
-                                       {0.5 * given.left, 0.0, 0.0, 0.0, 0.5 * given.left});
-        reported.arrays.write_partials(0, APSLK_PARTIAL_MET_ENERGY, {0.0, given.met, 0.0, 0.0, 0.0});
-        reported.arrays.write_partials(0, APSLK_PARTIAL_ADDED_BY_BODIES,
-                                       {0.0, 0.25 * given.bodies, 0.0, 0.75 * given.bodies, 0.0});
+        const auto write = [&](int kind, double sum) {
+            reported.arrays.write_partials(0, kind, {0.5 * sum, 0.0, 0.25 * sum, 0.0, 0.25 * sum});
+        };
+        write(APSLK_PARTIAL_FREE_ENERGY, 9.0);
+        write(APSLK_PARTIAL_BENDING_ENERGY, given.bending);
+        write(APSLK_PARTIAL_BENDING_LEFT, given.bending_left);
+        write(APSLK_PARTIAL_UNMET_ENERGY, given.left);
+        write(APSLK_PARTIAL_UNMET_GAIN, given.gained);
+        write(APSLK_PARTIAL_MET_ENERGY, given.met);
+        write(APSLK_PARTIAL_MET_GAIN, given.met_gained);
+        write(APSLK_PARTIAL_ADDED_BY_BODIES, given.bodies);
         reported.arrays.edit_states([&](apslk_solve_state& state) {
             state.pins = given.pins;
             state.mass = 4.0f;
             state.flies = given.flies;
+            state.initial_capped_rms = 1.0f;
         });
+        std::vector<apslk_stats> stats = reported.arrays.stats.read();
+        stats[0].sub_steps = given.solves;
+        stats[0].initial_max_area_change = stats[0].initial_rms_area_change = 1.0f;
+        reported.arrays.stats.write(stats);
         launch::end_call(reported.arrays, {.work_group_size = group, .integrates = true});
-        return reported.state();
-    };
-    const auto kept = [&](std::uint32_t group, const Given& given) {
-        const apslk_solve_state state = shares(group, given);
-        CHECK(state.met_kept == 1.0f);
-        return state.unmet_kept;
+        return Ended{reported.state(), reported.stats().energy_kept};
     };
     for (const std::uint32_t group : work_group_sizes()) {
         CAPTURE(group);
-        CHECK(kept(group, {}) == Approx(0.3));
+        const auto check = [&](const Given& given, double unmet_gain, double met_gain, double speed, double energy) {
+            CAPTURE(given.bending, given.bending_left, given.bodies, given.left, given.met, given.pins);
+            const Ended end = ended(group, given);
+            CHECK(end.kept.unmet_gain_kept == Approx(unmet_gain).margin(1e-6));
+            CHECK(end.kept.met_gain_kept == Approx(met_gain).margin(1e-6));
+            CHECK(end.kept.speed_kept == Approx(speed));
+            CHECK(end.energy == Approx(energy));
+        };
+        const auto allowed = [&](const Given& given, double energy) {
+            check(given, 1.0 - (100.0 - energy) / 95.0, 1.0, 1.0, energy / 100.0);
+        };
+        allowed({}, 9.0);
         // What three of four parts gave, by a third more.
-        CHECK(kept(group, {.bending = 6.0}) == Approx(0.5));
-        CHECK(kept(group, {.bending = 7.0, .bending_left = 1.0}) == Approx(0.5));
-        CHECK(kept(group, {.bending = 1.0, .bending_left = 7.0}) == Approx(0.3));
-        CHECK(kept(group, {.pins = 0.5f}) == Approx(0.4));
-        CHECK(kept(group, {.bodies = 4.0, .pins = 0.5f}) == Approx(0.6));
-        CHECK(kept(group, {.pins = 5.0f}) == 1.0f);
-        CHECK(kept(group, {.left = 8.0}) == 1.0f);
-        CHECK(kept(group, {.left = 9.01}) == 1.0f);  // what is let pass
-        CHECK(kept(group, {.left = infinity}) == 0.0f);
-        CHECK(kept(group, {.left = 0.0, .met = 100.0}) == 1.0f);  // within its limits
-        CHECK(kept(group, {.left = 100.0, .met = 5.0}) == Approx(0.2));
-        CHECK(shares(group, {.left = 100.0, .met = 36.0}).unmet_kept == 0.0f);
-        CHECK(shares(group, {.left = 100.0, .met = 36.0}).met_kept == Approx(0.5));
-        CHECK(shares(group, {.left = 80.0, .met = 20.0, .flies = true}).unmet_kept == Approx(0.3));
-        CHECK(shares(group, {.left = 80.0, .met = 20.0, .flies = true}).met_kept == Approx(0.3));
+        allowed({.bending = 6.0}, 25.0);
+        allowed({.bending = 7.0, .bending_left = 1.0}, 25.0);
+        allowed({.bending = 1.0, .bending_left = 7.0}, 9.0);
+        // Pins: 1 in addition to 3 would be more than twice their own; 2 to 4.
+        allowed({.pins = 0.5f}, 9.0);
+        allowed({.pins = 1.0f}, 16.0);
+        allowed({.pins = 2.0f}, 49.0);
+        allowed({.bodies = 4.0, .pins = 1.0f}, 36.0);
+        check({.pins = 5.0f}, 1.0, 1.0, 1.0, 1.0);
+        check({.left = 8.0}, 1.0, 1.0, 1.0, 1.0);
+        check({.left = 9.01}, 1.0, 1.0, 1.0, 1.0);  // what is let pass
+        check({.left = infinity, .gained = infinity}, 0.0, 1.0, 1.0, 0.0);
+        check({.left = 0.0, .gained = 0.0, .met = 100.0, .met_gained = 95.0}, 1.0, 1.0, 1.0, 1.0);  // within its limits
+        // What is within its limits gives where the rest is not enough: 110 in all, 101 of them too many.
+        check({.met = 10.0, .met_gained = 8.0}, 0.0, 1.0 - 6.0 / 8.0, 1.0, 9.0 / 110.0);
+        check({.left = 80.0, .met = 20.0, .flies = true}, 1.0, 1.0, 0.3, 0.09);
+        CHECK(ended(group, {.solves = 0}).energy == 1.0f);  // free motion stands
     }
 }
 

@@ -131,6 +131,9 @@ TEST_CASE("places that cannot be written to are refused in one line, before anyt
     check_refused(curtain + " --report " + folder.path().string(), "exists and is no plain file");
     check_refused(curtain + " --report /dev/null", "/dev/null: exists and is no plain file");
     check_refused(curtain + " --report " + (folder.path() / "none/report.json").string(), "no such folder");
+    const std::string name(300, 'a');
+    check_refused(curtain + " --out " + name, name + ": cannot be made a folder: File name too long");
+    check_refused(curtain + " --report " + name, name + ": cannot be written: File name too long");
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
     // Frames enough to run out the test's time.
     const std::string forever = scene_path("curtain.json") + " --frames 1000000";

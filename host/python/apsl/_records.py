@@ -94,12 +94,15 @@ class Stats:
     offender_index: int  # the first one
     raised_vertices: int  # that weighed more than given in the last sub-step
     greatest_mass_ratio: float  # their greatest mass over the one given; 1 where none was raised
-    max_stretch: float  # greatest principal stretch; this and what follows is 0 without limits_stretch
+    max_stretch: float  # greatest principal stretch; this and the next five are 0 without limits_stretch
     max_stretch_excess: float  # greatest max(0, principal stretch − ceiling)
     rms_stretch_excess: float  # weighted with A⁰
     initial_max_stretch_excess: float  # both at x + Δt v
     initial_rms_stretch_excess: float
     stretch_rows: int  # triangles that the ceiling held in the last sub-step
+    # the share of the cloth's kinetic energy, against what drives it, that the bound on energy left; 1 where it took
+    # none, and without integrates
+    energy_kept: float
 
 
 @dataclass(frozen=True)

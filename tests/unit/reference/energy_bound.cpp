@@ -27,6 +27,13 @@ reference::Buffers<double> buffers(const Numbers& inverse_masses, const Numbers&
             .contacts = contacts};
 }
 
+/// A step of 0.5 s that ends with these velocities, where it began in a plane z = 0.
+struct Free {
+    Numbers velocities, positions = Numbers(velocities.size(), 0.0);
+
+    operator FreeEnd<double>() const { return {positions, velocities, 0.5}; }
+};
+
 /// A flat sheet of 0.2 kg, all of it free, that has been crumpled: every vertex is off by up to 1 cm along each axis.
 struct Crumpled : SteppedSheet {
     explicit Crumpled(const Vector3<double>& velocity) : SteppedSheet(11) {
@@ -63,7 +70,7 @@ TEST_CASE("energy: what drives a cloth, and in which frame", "[energy]") {
         CHECK(got.bodies == Approx(bodies).margin(1e-13));
     };
     // Pins of (1, 0, 0) and (3, 2, 0).
-    const Numbers free{1, 0, 0, 2, 1, 1, 3, 2, 0, 2, 1, 2};
+    const Free free{{1, 0, 0, 2, 1, 1, 3, 2, 0, 2, 1, 2}};
     check(drive<double>(buffers({0, 1, 0, 1}), free), {2, 1, 0}, std::sqrt(2.0), 0.0);
     // There the second vertex, of 0.5 kg, has 1 m/s along its normal, where its plane has 4 m/s: that pulls others
     // along. The fourth is faster than its plane.
@@ -71,12 +78,29 @@ TEST_CASE("energy: what drives a cloth, and in which frame", "[energy]") {
                            0, 0, 1, 0, 7, 7, 7, 0, 0, 0, 1, 0, 2, 1, 1, 0};
     check(drive<double>(buffers({0, 2, 0, 1}, contacts), free), {2, 1, 0}, std::sqrt(2.0), 16.0 * 0.5 * (16.0 - 1.0));
     // Masses of 1 and 4 kg, without pins: with nothing that they may touch, or before a wall that stands still.
-    const Numbers flying{5, 0, 0, 0, 10, 0};
+    const Free flying{{5, 0, 0, 0, 10, 0}};
     check(drive<double>(buffers({1, 0.25}), flying), {1, 8, 0}, 0.0, 0.0);
     check(drive<double>(buffers({1, 0.25}, Numbers(16, 0.0)), flying), {1, 8, 0}, 0.0, 0.0);
     check(drive<double>(buffers({1, 0.25}, {0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1}), flying), {0, 0, 0}, 0.0,
           0.0);
-    check(drive<double>(buffers({}), Numbers{}), {0, 0, 0}, 0.0, 0.0);
+    check(drive<double>(buffers({}), Free{}), {0, 0, 0}, 0.0, 0.0);
+}
+
+TEST_CASE("energy: what a vertex cannot reach within the step drives nothing", "[energy]") {
+    // A floor that rises by 4 m/s, 3 m below the free end of a vertex of 2 m/s that falls: they close by 3 m in 0.5 s.
+    const auto driven = [](double gap, double upwards) {
+        return drive<double>(buffers({0.5}, {0, 0, 1, -gap, 0, 0, upwards, 0}), Free{{0, 0, -2}});
+    };
+    for (const double gap : {-1.0, 0.0, 2.999}) {
+        CHECK(driven(gap, 4.0).bodies == Approx(16.0 * 2.0 * (16.0 - 4.0)));
+        CHECK_FALSE(driven(gap, 4.0).flies);
+    }
+    CHECK(driven(3.001, 4.0).bodies == 0.0);
+    CHECK(driven(3.001, 4.0).flies);
+    CHECK(driven(3.001, 4.0).velocity == Vector3<double>(0, 0, -2));
+    // One that stands still is within 1 m of it.
+    CHECK_FALSE(driven(0.999, 0.0).flies);
+    CHECK(driven(1.001, 0.0).flies);
 }
 
 TEST_CASE("energy: what a body adds to a vertex, by hand", "[energy]") {
@@ -98,62 +122,71 @@ TEST_CASE("energy: what a body adds to a vertex, by hand", "[energy]") {
 
 TEST_CASE("energy: a cloth at pins that stand still keeps at most that of the free step, by hand", "[energy]") {
     // 2 kg at 3 m/s beside a pin: Σ m |u|² = 18.
-    const Numbers inverse_masses{0, 0.5}, free{0, 0, 0, 3, 0, 0};
-    const EnergyBound<double> bound(buffers(inverse_masses), free);
+    const Numbers inverse_masses{0, 0.5};
+    const EnergyBound<double> bound(buffers(inverse_masses), Free{{0, 0, 0, 3, 0, 0}});
     Numbers slower{0, 0, 0, 0, 2.9, 0}, faster{0, 0, 0, 0, 4, 3}, a_little{0, 0, 0, 0, 3.002, 0};
     const Numbers slower_before = slower, a_little_before = a_little;
-    bound.apply(slower, Flags{1, 1});
+    CHECK(bound.apply(slower, Flags{1, 1}) == 1.0);
     CHECK(slower == slower_before);
-    bound.apply(a_little, Flags{1, 1});
+    CHECK(bound.apply(a_little, Flags{1, 1}) == 1.0);
     CHECK(a_little == a_little_before);
     Numbers within_limits = faster;
     const Numbers faster_before = faster;
-    bound.apply(within_limits, Flags{0, 0});
+    CHECK(bound.apply(within_limits, Flags{0, 0}) == 1.0);
     CHECK(within_limits == faster_before);
-    bound.apply(faster, Flags{1, 1});
+    CHECK(bound.apply(faster, Flags{1, 1}) == Approx(9.0 / 25.0));
     CHECK(faster[4] == Approx(2.4));
     CHECK(faster[5] == Approx(1.8));
 }
 
-TEST_CASE("energy: what is outside its limits is slowed first, by hand", "[energy]") {
-    // Two vertices of 1 kg, Σ m |u|² = 25 + 0 at the free end.
-    const Numbers inverse_masses{0, 1, 1}, free{0, 0, 0, 5, 0, 0, 0, 0, 0};
-    const EnergyBound<double> bound(buffers(inverse_masses), free);
-    Numbers some{0, 0, 0, 4, 0, 0, 0, 12, 0}, all{0, 0, 0, 10, 0, 0, 0, 12, 0};
-    bound.apply(some, Flags{0, 0, 1});
+TEST_CASE("energy: a vertex loses what it gained, first where limits are not met, by hand", "[energy]") {
+    // Three vertices of 1 kg, Σ m |u|² = 25 + 4 + 0 at the free end.
+    const Numbers inverse_masses{0, 1, 1, 1};
+    const EnergyBound<double> bound(buffers(inverse_masses), Free{{0, 0, 0, 5, 0, 0, 2, 0, 0, 0, 0, 0}});
+    // 16 + 9 + 100: the last is outside its limits, and 4 are left for it. The second gained 5, the first is slower.
+    Numbers some{0, 0, 0, 4, 0, 0, 3, 0, 0, 0, 10, 0};
+    CHECK(bound.apply(some, Flags{0, 0, 0, 1}) == Approx(29.0 / 125.0));
     CHECK(some[3] == 4.0);
-    CHECK(some[7] == Approx(3.0));
-    bound.apply(all, Flags{1, 0, 1});
-    CHECK(all[3] == Approx(5.0));
-    CHECK(all[7] == 0.0);
+    CHECK(some[6] == 3.0);
+    CHECK(some[10] == Approx(2.0));
+    // 20.25 + 40 + 1: all that the last gained is not enough. 31.25 more of the 36 that the second did.
+    Numbers all{0, 0, 0, 4.5, 0, 0, std::sqrt(40.0), 0, 0, 0, 1, 0};
+    CHECK(bound.apply(all, Flags{0, 0, 0, 1}) == Approx(29.0 / 61.25));
+    CHECK(all[3] == 4.5);
+    CHECK(all[6] == Approx(std::sqrt(8.75)));
+    CHECK(all[10] == 0.0);
+    // One that is outside its limits and gained nothing loses nothing.
+    Numbers slow{0, 0, 0, 4.5, 0, 0, std::sqrt(40.0), 0, 0, 0, 0, 0};
+    bound.apply(slow, Flags{1, 1, 0, 0});
+    CHECK(slow[3] == 4.5);
+    CHECK(slow[6] == Approx(std::sqrt(8.75)));
     // In flight, about a mean of (2.5, 0, 0): 12.5 there, and 50 left.
-    const Numbers flying{1, 1}, flying_free{5, 0, 0, 0, 0, 0};
+    const Numbers flying{1, 1};
     Numbers left{7.5, 0, 0, -2.5, 0, 0};
-    EnergyBound<double>(buffers(flying), flying_free).apply(left, Flags{1, 0});
+    CHECK(EnergyBound<double>(buffers(flying), Free{{5, 0, 0, 0, 0, 0}}).apply(left, Flags{1, 0}) == Approx(0.25));
     CHECK(left[0] == Approx(5.0));
     CHECK(left[3] == Approx(0.0).margin(1e-12));
 }
 
 TEST_CASE("energy: hinges give what they hold, and what drives a cloth what its speed is worth", "[energy]") {
     // 2 kg at 3 m/s, and 16 J in hinges: 18 + 32 = 2 · 5².
-    const Numbers inverse_masses{0, 0.5}, free{0, 0, 0, 3, 0, 0};
-    EnergyBound<double> bending(buffers(inverse_masses), free);
+    const Numbers inverse_masses{0, 0.5};
+    EnergyBound<double> bending(buffers(inverse_masses), Free{{0, 0, 0, 3, 0, 0}});
     bending.add_bending(16.0);
     Numbers faster{0, 0, 0, 0, 10, 0};
     bending.apply(faster, Flags{0, 1});
     CHECK(faster[4] == Approx(5.0));
 
-    // Pins of 0 and 2 m/s: a frame of 1 m/s, and 1 m/s there. A vertex at rest in it may have as much.
+    // Pins of 0 and 2 m/s: a frame of 1 m/s, and 1 m/s there. A vertex at rest in it may have as much, one at 0.5 m/s
+    // there 1.5, and one that is faster 2 at most of theirs.
     const Numbers driven_masses{0, 0, 0.5};
-    const EnergyBound<double> at_rest(buffers(driven_masses), Numbers{0, 0, 0, 2, 0, 0, 1, 0, 0});
-    Numbers from_rest{0, 0, 0, 2, 0, 0, 11, 0, 0};
-    at_rest.apply(from_rest, Flags{1, 1, 1});
-    CHECK(from_rest == Numbers{0, 0, 0, 2, 0, 0, 2, 0, 0});
-    // At 8 m/s there, 1 m/s more.
-    const EnergyBound<double> moving(buffers(driven_masses), Numbers{0, 0, 0, 2, 0, 0, 9, 0, 0});
-    Numbers from_motion{0, 0, 0, 2, 0, 0, 18, 0, 0};
-    moving.apply(from_motion, Flags{1, 1, 1});
-    CHECK(from_motion[6] == Approx(10.0));
+    for (const auto& [free, allowed] : {std::pair(0.0, 1.0), {0.5, 1.5}, {1.0, 2.0}, {1.5, 2.0}, {8.0, 8.0}}) {
+        const Numbers ends{0, 0, 0, 2, 0, 0, 1.0 + free, 0, 0};
+        Numbers left{0, 0, 0, 2, 0, 0, 18, 0, 0};
+        EnergyBound<double>(buffers(driven_masses), Free{ends}).apply(left, Flags{1, 1, 1});
+        CHECK(left[3] == 2.0);
+        CHECK(left[6] == Approx(1.0 + allowed));
+    }
 }
 
 TEST_CASE("energy: corrections of positions throw nothing about, and a free cloth keeps its momentum",
