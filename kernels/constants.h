@@ -78,7 +78,7 @@
 // What the energy of a whole step may be off by, which the discrete step is (docs/formulation.md, Energy).
 #define APSLK_ENERGY_LET_PASS 1.002f
 // A triangle is outside its limits where its area change, or its stretch over the ceiling, is above this.
-#define APSLK_UNMET 0.1f
+#define APSLK_UNMET 0.05f
 // What a body that is faster than a vertex sets in motion by it, in masses of the vertex.
 #define APSLK_PULLED_ALONG 16.0f
 
