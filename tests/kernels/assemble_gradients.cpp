@@ -293,11 +293,12 @@ TEST_CASE("measure_area_change: of a whole step, what is or was outside its limi
         const std::vector<Cloth> cloths{make_cloth(strip(131), 1), make_cloth(tetrahedron(), 2)};
         Arrays arrays(cloths, Matrix::consistent, paper_setting, 3);
         std::vector<float> errors = arrays.start_errors.read();
+        const double limit{APSLK_UNMET};
         const auto was_outside = [](std::size_t a) { return a % 5 == 2; };
         for (std::size_t c = 0; c < cloths.size(); ++c)
             for (std::size_t a = 0; a < cloths[c].rest_areas.size(); ++a)
                 errors[arrays.triangle_places[c][a]] =
-                    static_cast<float>((was_outside(a) ? -0.11 : 0.09) * cloths[c].rest_areas[a]);
+                    static_cast<float>((was_outside(a) ? -1.1 : 0.9) * limit * cloths[c].rest_areas[a]);
         arrays.start_errors.write(errors);
         launch::measure_area_change(arrays, {.work_group_size = group, .integrates = true});
         check_area_sums(arrays);
@@ -308,8 +309,8 @@ TEST_CASE("measure_area_change: of a whole step, what is or was outside its limi
                 const double rest_area = cloths[c].rest_areas[a];
                 const double change =
                     rest_area > 0.0 ? std::abs(arrays.solves[c].geometry[a].area / rest_area - 1.0) : 0.0;
-                if (std::abs(change - 0.1) < 1e-4) continue;
-                const bool want = rest_area > 0.0 && (was_outside(a) || change > 0.1);
+                if (std::abs(change - limit) < 1e-4) continue;
+                const bool want = rest_area > 0.0 && (was_outside(a) || change > limit);
                 CHECK(unmet[arrays.triangle_places[c][a]] == (want ? 1.0f : 0.0f));
                 ++(want ? outside : inside);
             }
