@@ -117,9 +117,9 @@ APSLK_INLINE apslk_drive find_drive(__global float* partials, uint groups, __loc
     return drive;
 }
 
-// m²/s²: what a body adds at most to the square of the velocity of the vertex near it, both in the frame. It
-// pushes along its normal up to its own speed there, and drags along its surface where there is friction. A body that
-// is faster than the vertex also sets in motion what hangs on it.
+// m²/s²: what a body adds at most to the square of the velocity of the vertex near it, both in the frame. It pushes
+// along its normal up to its own speed there, and drags along its surface where there is friction. A body that is
+// faster than the vertex also sets in motion what hangs on it.
 APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const float* contacts, uint vertex) {
 #if APSLK_KEEPS_CONTACTS
     const float3 normal = vload4(2ul * vertex, contacts).xyz;
