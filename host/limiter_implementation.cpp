@@ -80,7 +80,7 @@ std::size_t StrainLimiter::Implementation::required_scratch_bytes(
 
 void StrainLimiter::Implementation::create_program(std::uint32_t max_patch_vertices,
                                                    std::span<const std::byte> binary) {
-    patch_vertex_room = room_for_patches(max_patch_vertices);
+    patch_vertex_room = room_for_patches(facts, max_patch_vertices);
     const std::string source = program_source(kernel_files(options));
     const std::string flags = build_options(options, patch_vertex_room);
     program_fingerprint = host::program_fingerprint(device, source, flags);

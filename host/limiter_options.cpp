@@ -127,9 +127,10 @@ std::vector<std::string_view> kernel_files(const Options& options) {
     return files;
 }
 
-std::uint32_t room_for_patches(std::uint32_t largest) {
+std::uint32_t room_for_patches(const DeviceFacts& facts, std::uint32_t largest) {
     constexpr std::uint32_t step = 64;  // 1 KiB of local memory
-    return (largest + step - 1) / step * step;
+    const std::uint32_t least = facts.is_cpu ? 1024 : step;
+    return std::max((largest + step - 1) / step * step, least);
 }
 
 std::string build_options(const Options& options, std::uint32_t patch_vertices) {

@@ -27,8 +27,10 @@ bool uses_pattern(const Options& options);
 std::vector<std::string_view> kernel_files(const Options& options);
 
 /// Vertices of a patch to compile for, from those of the largest: rounded up, so that a mesh whose topology changes
-/// a little needs no other program.
-std::uint32_t room_for_patches(std::uint32_t largest);
+/// a little needs no other program. On a CPU, where local memory is ordinary memory and only what is touched of it
+/// costs, nearly all meshes get the same room, so that what a driver's cache holds of one mesh's program serves the
+/// next.
+std::uint32_t room_for_patches(const DeviceFacts& facts, std::uint32_t largest);
 
 /// `patch_vertices`: what a patch has room for.
 std::string build_options(const Options& options, std::uint32_t patch_vertices);

@@ -27,4 +27,5 @@ ctest --preset asan-library -j "$(nproc)"
 cmake --preset tsan
 cmake --build --preset tsan
 ctest --preset tsan -j "$(nproc)"
+echo "not run here: every work-group size, 10,000 random cases, all AMD targets: ctest --preset thorough -j $(nproc)"
 [[ ${#skipped[@]} -eq 0 ]] || printf '%s\n' "${skipped[@]}" >&2

@@ -5,6 +5,7 @@ Exit status: 0 all kernels passed; 1 some were refused, one line each on standar
 """
 import argparse
 import glob
+import os
 import shutil
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -13,7 +14,7 @@ from pathlib import Path
 import amd_compiler
 import gate
 import tuning_table
-from variants import TARGETS, VariantError, kernels_named_in, variants
+from variants import EXECUTED, TARGETS, VariantError, kernels_named_in, sources_hash, variants
 
 PROJECT = Path(__file__).resolve().parents[2]
 
@@ -43,14 +44,25 @@ def parse_arguments():
     parser.add_argument("--clang", default="clang-19")
     parser.add_argument("--device-libraries", type=Path, default=device_libraries(), help="folder of ocml.bc")
     parser.add_argument("--jobs", type=int, default=2, help="compilers at a time")
+    parser.add_argument("--few-targets", action="store_true",
+                        help="compile for those alone that tests/amd/replay executes, and refuse kernels that have changed since "
+                             "the budget was written for all; APSL_TEST_THOROUGH in the environment: all targets after all")
     arguments = parser.parse_args()
     require_compiler(parser, arguments)
+    if arguments.few_targets and arguments.update_budget:
+        parser.error("--few-targets: a budget is written for all targets, expected no --update-budget with it")
+    if os.environ.get("APSL_TEST_THOROUGH"):
+        arguments.few_targets = False
     return arguments
+
+
+def targets_of(arguments):
+    return [target for target in TARGETS if target in EXECUTED or not arguments.few_targets]
 
 
 def compile_all(arguments, refused):
     """{kernel variant: {target: Usage}}; what does not compile goes to `refused`."""
-    jobs = [(variant, target) for variant in variants(arguments.kernels) for target in TARGETS]
+    jobs = [(variant, target) for variant in variants(arguments.kernels) for target in targets_of(arguments)]
 
     def compiled(job):
         variant, target = job
@@ -115,8 +127,11 @@ def main():
     if not refused:  # a file that does not compile has none of its kernels
         refused += missing_kernels(arguments.kernels, results) + gone_kernels(results, budget or {})
     judge(results, budget, refused)
+    if arguments.few_targets and gate.read_sources(arguments.budget) != sources_hash(arguments.kernels):
+        refused.append(f"{arguments.budget.name}: sources: written for other kernels, write it anew for all targets with "
+                       "check_kernels.py --update-budget --write-table docs/amd_registers.md")
     compiler = amd_compiler.version(arguments.clang)
-    table = tuning_table.table(compiler, results, TARGETS) if not refused else ""
+    table = tuning_table.table(compiler, results, targets_of(arguments)) if not refused else ""
     if table and arguments.check_table and not tuning_table.is_current(arguments.check_table, table):
         refused.append(f"{arguments.check_table.name}: table: out of date, write it anew with "
                        "check_kernels.py --update-budget --write-table docs/amd_registers.md")
@@ -125,12 +140,12 @@ def main():
     if refused:
         return 1
     if arguments.update_budget:
-        gate.write_budget(arguments.budget, compiler, results)
+        gate.write_budget(arguments.budget, compiler, sources_hash(arguments.kernels), results)
     if arguments.write_table:
         tuning_table.write(arguments.write_table, table)
     if arguments.table:
         print(table)
-    print(f"passed: {len(results)} kernel variants on {len(TARGETS)} targets")
+    print(f"passed: {len(results)} kernel variants on {len(targets_of(arguments))} targets")
     return 0
 
 

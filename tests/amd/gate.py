@@ -71,11 +71,16 @@ def read_budget(path):
     return json.loads(path.read_text(encoding="utf-8"))["kernels"] if path.exists() else {}
 
 
-def write_budget(path, compiler, results):
+def read_sources(path):
+    """sources_hash() of the kernels that the budget was written for; None where there is no file."""
+    return json.loads(path.read_text(encoding="utf-8")).get("sources") if path.exists() else None
+
+
+def write_budget(path, compiler, sources, results):
     """One line a target, so that a difference reads well. `results` is {kernel variant: {target: Usage}}."""
     kernels = []
     for key in sorted(results):
         targets = [f'   "{target}": {json.dumps(budget_of(usage))}' for target, usage in results[key].items()]
         kernels.append(f'  "{key}": {{\n' + ",\n".join(targets) + "\n  }")
-    path.write_text(f'{{\n "compiler": {json.dumps(compiler)},\n "kernels": {{\n' + ",\n".join(kernels) + "\n }\n}\n",
+    path.write_text(f'{{\n "compiler": {json.dumps(compiler)},\n "sources": {json.dumps(sources)},\n "kernels": {{\n' + ",\n".join(kernels) + "\n }\n}\n",
                     encoding="utf-8")

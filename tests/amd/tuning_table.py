@@ -45,9 +45,19 @@ def write(path, new_table):
     path.write_text(before + new_table + after, encoding="utf-8")
 
 
+def _cells(lines):
+    """{(row, column): cell} of a table."""
+    rows = [[cell.strip() for cell in line.strip("| \n").split("|")] for line in lines if line.startswith("| ")]
+    return {(row[0], column): cell for row in rows[1:] for column, cell in zip(rows[0][1:], row[1:])}
+
+
 def is_current(path, new_table):
-    """Whether the document holds this table; another version of the compiler has nothing to say about it."""
-    document = path.read_text(encoding="utf-8")
-    before, after = _split(document)
-    compiler = new_table.splitlines()[1].split(";")[0]
-    return document == before + new_table + after or compiler not in document
+    """Whether the document's table has the same kernels, and in each column of this one the same figures; another
+    version of the compiler has nothing to say about it."""
+    before, after = _split(document := path.read_text(encoding="utf-8"))
+    lines = document[len(before):len(document) - len(after)].splitlines()
+    if new_table.splitlines()[1].split(";")[0] not in document:
+        return True
+    wanted, stored = _cells(new_table.splitlines()), _cells(lines)
+    return ({row for row, _ in wanted} == {row for row, _ in stored}
+            and all(stored.get(place) == cell for place, cell in wanted.items()))

@@ -4,6 +4,7 @@
 This is the one place to edit when a kernel file gains a define or a GPU is to be added. Files and the defines each of
 them reads are found in the sources, so a new kernel file needs no entry, and a new define without one is an error.
 """
+import hashlib
 import itertools
 import re
 from dataclasses import dataclass
@@ -115,6 +116,9 @@ TARGETS = [
     Target("gfx1201", 64, "1036"),
 ]
 
+# What tests/amd/replay executes: one of GCN, of CDNA, and of RDNA with waves of 32.
+EXECUTED = [target for target in TARGETS if str(target) in ("gfx906/64", "gfx942/64", "gfx1100/32")]
+
 
 class VariantError(Exception):
     """The kernel sources ask for something the table above does not have."""
@@ -179,3 +183,13 @@ def kernels_named_in(kernels):
     """Pairs (file name, kernel) of every kernel defined in a folder, whatever conditions it stands behind."""
     return sorted((path.name, name) for path in kernels.iterdir() if path.suffix in (".cl", ".h")
                   for name in _KERNEL.findall(_COMMENT.sub("", path.read_text(encoding="utf-8"))))
+
+
+def sources_hash(kernels):
+    """A digest of what makes machine code of the folder: all sources without comments and white space, and what they are
+    compiled with."""
+    digest = hashlib.sha256(repr((AXES, NOT_FOR_GPUS, TARGETS)).encode())
+    for path in sorted([*kernels.glob("*.cl"), *kernels.glob("*.h")]):
+        text = re.sub(r"/\*.*?\*/|//[^\n]*", " ", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+        digest.update(f"{path.name} {' '.join(text.split())}\n".encode())
+    return digest.hexdigest()

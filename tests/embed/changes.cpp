@@ -46,6 +46,17 @@ void check_same(const Outcome& got, const Outcome& expected) {
     CHECK(same_bytes(got.stats, expected.stats));
 }
 
+/// A patch of these has three vertices a triangle.
+Mesh triangles_apart(std::uint32_t count) {
+    Mesh mesh;
+    for (std::uint32_t t = 0; t < count; ++t) {
+        const double x = 2.0 * t;
+        mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+        mesh.positions.insert(mesh.positions.end(), {x, 0.0, 0.0, x + 1.0, 0.0, 0.0, x, 1.0, 0.0});
+    }
+    return mesh;
+}
+
 }  // namespace
 
 TEST_CASE("pins, alpha, rest areas and time step change between calls without a rebuild", "[embed]") {
@@ -196,7 +207,7 @@ TEST_CASE("rebuilt for other topologies a limiter is a fresh one, without compil
 
 TEST_CASE("a rebuild for patches that the program has no room for compiles another, once", "[embed]") {
     const MovingCloth small = moving_cloth(tetrahedron(), 1);
-    const MovingCloth large = moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 2);
+    const MovingCloth large = moving_cloth(triangles_apart(600), 2);
     StrainLimiter limiter(device().context, device().id, small.topology);
     StrainLimiter fresh(device().context, device().id, large.topology);
     const int builds = opencl_calls().builds;
@@ -211,7 +222,7 @@ TEST_CASE("a rebuild for patches that the program has no room for compiles anoth
 TEST_CASE("a rebuild keeps what became of the program binary, unless it compiles", "[embed]") {
     if (without_binaries()) return;
     const MovingCloth small = moving_cloth(tetrahedron(), 1);
-    const MovingCloth large = moving_cloth(grid(33, 33, 1.0, 1.0, Diagonals::alternating), 2);
+    const MovingCloth large = moving_cloth(triangles_apart(600), 2);
     StrainLimiter first(device().context, device().id, small.topology);
     outcome(first, {&small, 1}, {&few, 1});
     const std::vector<std::byte> binary = first.program_binary();

@@ -133,7 +133,7 @@ constexpr Parameters small_steps{.regularization = 2.0f};
 }  // namespace
 
 TEST_CASE("every layout gives the bytes of packed arrays", "[embed]") {
-    for (const Options& variant : variants) {
+    for (const Options& variant : compared_variants()) {
         StrainLimiter packed_limiter(device().context, device().id, topologies(), variant);
         for (const Arrangement& a : arrangements) {
             CAPTURE(a.name, static_cast<int>(variant.apply), static_cast<int>(variant.execution));
@@ -155,7 +155,7 @@ TEST_CASE("every layout gives the bytes of packed arrays", "[embed]") {
 }
 
 TEST_CASE("positions only: what the filter moves a cloth by that is at rest at the end of the step", "[embed]") {
-    for (const Options& variant : variants) {
+    for (const Options& variant : compared_variants()) {
         std::vector<MovingCloth> resting = cloths();
         for (MovingCloth& cloth : resting) cloth.velocities.assign(cloth.velocities.size(), 0.0);
         const CallerBuffers packed(resting, variant);

@@ -151,6 +151,19 @@ TEST_CASE("program binary: of other options, device or driver it is refused and 
     CHECK(limiter(kept.options, kept.binary).program_binary_use() == ProgramBinaryUse::taken);
 }
 
+TEST_CASE("program binary: on a CPU that of one mesh serves others, of all sizes", "[embed]") {
+    if (without_binaries()) return;
+    cl_device_type type = 0;
+    require_success(clGetDeviceInfo(device().id, CL_DEVICE_TYPE, sizeof type, &type, nullptr), "clGetDeviceInfo");
+    if (type != CL_DEVICE_TYPE_CPU) return;
+    const Kept kept;
+    for (const Mesh& mesh : {right_triangle(), fan(9), grid(41, 23, 1.0, 1.0, Diagonals::random)}) {
+        const StrainLimiter other(device().context, device().id, moving_cloth(mesh, 1).topology, kept.options,
+                                  kept.binary);
+        CHECK(other.program_binary_use() == ProgramBinaryUse::taken);
+    }
+}
+
 TEST_CASE("program binary: rebuilt where the driver refuses it, empty where the driver gives none", "[embed]") {
     if (without_binaries()) return;
     const Kept kept;

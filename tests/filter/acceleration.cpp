@@ -55,7 +55,7 @@ TEST_CASE("acceleration of each vertex: a free cloth in one part, by hand", "[fi
 
 TEST_CASE("acceleration of each vertex: the device agrees with the reference", "[filter][acceleration]") {
     for (const MovingCloth& cloth : small_cloths())
-        for (const std::uint32_t work_group_size : {1u, 64u}) {
+        for (const std::uint32_t work_group_size : compared_group_sizes()) {
             CAPTURE(cloth.rest_areas.size(), work_group_size);
             Options sized = by_areas;
             sized.work_group_size = work_group_size;

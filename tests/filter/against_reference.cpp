@@ -46,7 +46,7 @@ TEST_CASE("the filter agrees with the reference: every variant on every kind of 
         topologies.push_back(cloths.back().topology);
     }
     for (Options options : variants)
-        for (const std::uint32_t work_group_size : {1u, 64u}) {
+        for (const std::uint32_t work_group_size : compared_group_sizes()) {
             options.work_group_size = work_group_size;
             StrainLimiter limiter(device().context, device().id, topologies, options);
             const CallerBuffers buffers(cloths, options);
@@ -141,7 +141,7 @@ TEST_CASE("iterations past the queued ones: as many as the reference's", "[filte
     REQUIRE(want.stats.iterations > queued + 2);
     REQUIRE(want.stats.iterations < 50);
     for (Options options : {many_groups, one_group})
-        for (const std::uint32_t work_group_size : {1u, 64u}) {
+        for (const std::uint32_t work_group_size : compared_group_sizes()) {
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
             const Filtered got = filter_on_device(cloth, options, slow);
@@ -173,7 +173,7 @@ TEST_CASE("adaptive alpha: raised, restored and kept between calls as the refere
         .regularization = 1.3f, .sub_steps = 2, .tolerance = 0.1f, .max_iterations = 50, .adaptive_threshold = 40};
     for (Options options : variants) {
         if (options.matrix == Matrix::printed) continue;  // amplifies what differs, see docs/formulation.md
-        for (const std::uint32_t work_group_size : {1u, 64u}) {
+        for (const std::uint32_t work_group_size : compared_group_sizes()) {
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
             StrainLimiter limiter(device().context, device().id, cloth.topology, options);
@@ -245,7 +245,7 @@ TEST_CASE("warm start: the guess a call starts from is the reference's, and a br
     for (Options options : variants) {
         if (options.matrix == Matrix::printed) continue;  // amplifies what differs, see docs/formulation.md
         options.warm_start_sub_steps = 2;
-        for (const std::uint32_t work_group_size : {1u, 64u}) {
+        for (const std::uint32_t work_group_size : compared_group_sizes()) {
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
             StrainLimiter limiter(device().context, device().id, cloth.topology, options);
@@ -331,7 +331,7 @@ TEST_CASE("many cloths in one launch: each the very bytes it has alone", "[filte
     REQUIRE(cloths.size() > 24);
     std::vector<std::shared_ptr<const Topology>> topologies;
     for (const MovingCloth& cloth : cloths) topologies.push_back(cloth.topology);
-    for (const std::uint32_t work_group_size : {1u, 64u}) {
+    for (const std::uint32_t work_group_size : compared_group_sizes()) {
         Options options = one_group;
         options.work_group_size = work_group_size;
         StrainLimiter limiter(device().context, device().id, topologies, options);
@@ -380,7 +380,7 @@ TEST_CASE("the filter agrees with the reference: small steps", "[filter]") {
     small_steps.sub_steps = 4;
     small_steps.stepping = Stepping::small_steps;
     for (Options options : {variants[0], many_groups, one_group})
-        for (const std::uint32_t work_group_size : {1u, 64u}) {
+        for (const std::uint32_t work_group_size : compared_group_sizes()) {
             options.work_group_size = work_group_size;
             CAPTURE(variant_name(options));
             check_against_reference(cloth, options, small_steps);

@@ -66,7 +66,7 @@ double rest_of_cantilever(float rigidity, int sub_steps, float time_step, int it
 TEST_CASE("bending: the device agrees with the reference", "[filter][bending]") {
     for (const MovingCloth& cloth : small_cloths())
         for (const Parameters& parameters : {falling(3, 1e-3f, 1), falling(6, 0.02f, 4), falling(6, 50.0f, 2)})
-            for (const std::uint32_t work_group_size : {1u, 64u}) {
+            for (const std::uint32_t work_group_size : compared_group_sizes()) {
                 Options sized = bending;
                 sized.work_group_size = work_group_size;
                 CAPTURE(cloth.rest_areas.size(), parameters.sub_steps, parameters.bending, work_group_size);

@@ -101,7 +101,7 @@ TEST_CASE("contact: the device agrees with the reference", "[filter][contact]") 
     for (const MovingCloth& cloth : small_cloths())
         for (const auto& [options, parameters] :
              {std::pair{filtering, tight(3)}, {filtering, tight(24)}, {with_ceiling, tight(6, 1.05f)}})
-            for (const std::uint32_t work_group_size : {1u, 64u}) {
+            for (const std::uint32_t work_group_size : compared_group_sizes()) {
                 Options sized = options;
                 sized.work_group_size = work_group_size;
                 CAPTURE(cloth.rest_areas.size(), parameters.sub_steps, options.limits_stretch, work_group_size);
@@ -179,7 +179,7 @@ TEST_CASE("contact and bending: the device agrees with the reference", "[filter]
     constexpr Options options{.limits_stretch = true, .integrates = true, .keeps_contacts = true, .bends = true};
     for (const MovingCloth& cloth : small_cloths())
         for (const auto& [sub_steps, rigidity] : {std::pair{3, 1e-3f}, {6, 0.02f}, {6, 50.0f}})
-            for (const std::uint32_t work_group_size : {1u, 64u}) {
+            for (const std::uint32_t work_group_size : compared_group_sizes()) {
                 Parameters parameters = tight(sub_steps, 1.05f);
                 parameters.acceleration = {0.5f, -9.81f, 0.25f};
                 parameters.damping = 0.4f;

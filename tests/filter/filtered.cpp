@@ -2,6 +2,7 @@
 #include "filter/filtered.hpp"
 
 #include "resolved_parameters.hpp"
+#include "support/thorough.hpp"
 #include "support/tolerances.hpp"
 
 #include <apsl/reference.hpp>
@@ -24,6 +25,11 @@ std::string variant_name(const Options& options) {
             : options.execution == Execution::many_groups ? ", many groups of "
                                                           : ", groups of ") +
            size;
+}
+
+std::vector<std::uint32_t> compared_group_sizes() {
+    if (thorough()) return {1, 64};
+    return {64};
 }
 
 std::vector<MovingCloth> small_cloths() {

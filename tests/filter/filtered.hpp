@@ -26,6 +26,10 @@ constexpr Options one_group = variants[4];
 /// A polynomial in place of CG.
 constexpr Options by_chebyshev{.execution = Execution::many_groups, .solver = Solver::chebyshev};
 
+/// Work-items a group in which device and reference are compared: 64, thorough() 1 as well, which is what
+/// most other tests run in (automatic on a CPU).
+std::vector<std::uint32_t> compared_group_sizes();
+
 /// One of each kind of small mesh.
 std::vector<MovingCloth> small_cloths();
 /// A square of n × n vertices, 1 m wide, flat and at rest, 0.2 kg/m², held at `pins`.

@@ -48,7 +48,7 @@ TEST_CASE("the filter agrees with the reference in small steps: layouts, a cloth
                                             .stepping = sub_steps < 20 ? Stepping::small_steps : Stepping::automatic});
         parameters[1].enabled = false;
         for (const Options& variant : {variants[0], many_groups, one_group})
-            for (const std::uint32_t work_group_size : {1u, 64u})
+            for (const std::uint32_t work_group_size : compared_group_sizes())
                 for (const Options& layout : layouts) {
                     Options options = with_layout(variant, layout);
                     options.work_group_size = work_group_size;

@@ -63,7 +63,7 @@ TEST_CASE("stretch ceiling: the device agrees with the reference", "[filter][str
          .stepping = Stepping::whole_step},
         {.regularization = 1.2f, .sub_steps = 6, .tolerance = 3e-4f, .stretch_ceiling = 1.1f},
         {.regularization = 1.2f, .sub_steps = 2, .most_sub_steps = 9, .tolerance = 3e-4f, .stretch_ceiling = 1.02f}};
-    for (const std::uint32_t work_group_size : {1u, 32u, 64u})
+    for (const std::uint32_t work_group_size : compared_group_sizes())
         for (const bool per_triangle : {false, true}) {
             Options options = with_ceiling;
             options.work_group_size = work_group_size;

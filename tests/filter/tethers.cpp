@@ -75,7 +75,7 @@ TEST_CASE("tethers: what starts within their reach ends there, and what does not
 
 TEST_CASE("tethers: the device agrees with the reference", "[filter][tethers]") {
     for (const MovingCloth& cloth : small_cloths())
-        for (const std::uint32_t work_group_size : {1u, 64u}) {
+        for (const std::uint32_t work_group_size : compared_group_sizes()) {
             CAPTURE(cloth.rest_areas.size(), work_group_size);
             Options sized = by_areas;
             sized.work_group_size = work_group_size;

@@ -36,7 +36,7 @@ TEST_CASE("a whole step: the device agrees with the reference", "[filter][whole_
     for (const MovingCloth& cloth : small_cloths())
         for (const auto& [options, parameters] :
              {std::pair{by_areas, falling(3)}, {by_areas, falling(24)}, {with_ceiling, falling(6, 1.05f)}})
-            for (const std::uint32_t work_group_size : {1u, 64u}) {
+            for (const std::uint32_t work_group_size : compared_group_sizes()) {
                 Options sized = options;
                 sized.work_group_size = work_group_size;
                 CAPTURE(cloth.rest_areas.size(), parameters.sub_steps, options.limits_stretch, work_group_size);

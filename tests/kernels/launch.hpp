@@ -23,7 +23,7 @@ struct Build {
     bool acceleration_per_vertex = false;
 };
 
-/// 1, 32, 64 and 256 work-items a group, as far as the device goes.
+/// 1 and 64 work-items a group, thorough() 1, 32, 64 and 256, as far as the device goes.
 std::vector<std::uint32_t> work_group_sizes();
 /// 1, one below, at and above a group's size, and many.
 std::vector<std::uint32_t> awkward_sizes(std::uint32_t work_group_size);

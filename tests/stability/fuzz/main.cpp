@@ -7,6 +7,7 @@
 #include "stability/fuzz/print_case.hpp"
 #include "stability/fuzz/shrink_case.hpp"
 #include "stability/fuzz/watchdog.hpp"
+#include "support/thorough.hpp"
 
 #include <charconv>
 #include <cstdio>
@@ -24,7 +25,7 @@ constexpr std::chrono::seconds patience{120}, shrinking_patience{600};
 constexpr int shrinking_trials = 400;
 
 struct Arguments {
-    std::uint64_t seed = 1, cases = 10000, first = 0;
+    std::uint64_t seed = 1, cases = thorough() ? 10000 : 1000, first = 0;
     bool keeps_going = false, shrinks = true;
 };
 
