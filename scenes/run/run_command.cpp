@@ -189,9 +189,10 @@ int run_command(const RunOptions& options) {
     if (report.breakdown) {
         std::fprintf(stderr,
                      "error: %s: broke down in frame %d, step %d, stage %s: %s; try a smaller time_step with more "
-                     "steps_per_frame, softer springs or a larger regularization\n",
+                     "steps_per_frame, %s or a larger regularization\n",
                      report.scene.c_str(), report.breakdown->frame, report.breakdown->step,
-                     report.breakdown->stage.c_str(), report.breakdown->what.c_str());
+                     report.breakdown->stage.c_str(), report.breakdown->what.c_str(),
+                     report.stand_alone ? "more sub_steps" : "softer springs");
         return exit_broke_down;
     }
     return exit_done;

@@ -268,11 +268,20 @@ TEST_CASE("a simulation that breaks down exits with 1 and a report that says whe
                  " --set gravity=[0,-1e308,0] --set time_step=100 --set integrator.none={} --report " + report_file);
     CHECK(run.exit_code == 1);
     CHECK_THAT(run.errors, Catch::Contains("broke down in frame"));
+    CHECK_THAT(run.errors, Catch::EndsWith("softer springs or a larger regularization\n"));
     const nlohmann::json report = read_json(report_file);
     CHECK(report["summary"]["status"] == "diverged");
     CHECK(report["breakdown"]["frame"] == report["frames"].size() - 1);
     CHECK(report["frames"].back()["status"] == "diverged");
     CHECK(contains(keys(report["breakdown"]), {"frame", "step", "stage", "what"}));
+}
+
+TEST_CASE("a stand-alone cloth that breaks down is not advised on springs, for it has none") {
+    const ProgramRun run =
+        run_apsl("run " + scene_path("stand_alone_curtain.json") + " --frames 1 --set gravity=[0,-1e30,0]");
+    CHECK(run.exit_code == 1);
+    CHECK_THAT(run.errors, Catch::Contains("broke down in frame 0, step 0, stage stand_alone"));
+    CHECK_THAT(run.errors, Catch::EndsWith("more sub_steps or a larger regularization\n"));
 }
 
 TEST_CASE("solves that do not converge are a status and a piece of advice") {
