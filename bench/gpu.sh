@@ -130,6 +130,7 @@ IFS='|' read -r platform version units memory < <(sed -nE \
   '2s/^   (no )?GPU, (.*), driver (.*), ([0-9]+) compute units, ([0-9.]+) GB$/\2|\3|\4|\5/p' <<<"$described") \
   || stop "apsl devices says what this script does not understand: $described"
 export APSL_TEST_DEVICE="$number"
+export APSL_TEST_THOROUGH=1  # work-groups of 256 too, which is what a GPU gets
 APSL_COMMIT="$(cat "$bundle/commit")"
 export APSL_COMMIT
 echo "device:  $device ($units compute units, $memory GB)"
