@@ -203,9 +203,9 @@ const Kernel& measure_area_change(const Kernel& kernel, const Arrays& a, const A
 
 template <class Arrays>
 const Kernel& measure_energy(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
-    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.vertex_order, a.corner_offsets,
-                         a.corners, a.start_errors, a.motion, a.total_correction, caller.positions, caller.velocities,
-                         or_any(caller.contacts, caller), where_accelerated(a.accelerations, caller));
+    return set_arguments(kernel, a.cloths, a.parameters, a.states, a.partials, a.vertex_order, a.moved, a.motion,
+                         caller.positions, caller.velocities, or_any(caller.contacts, caller),
+                         where_accelerated(a.accelerations, caller));
 }
 
 template <class Arrays>
@@ -223,7 +223,7 @@ const Kernel& update_velocities(const Kernel& kernel, const Arrays& a, const Buf
 template <class Arrays>
 const Kernel& store_step(const Kernel& kernel, const Arrays& a, const Buffers& caller) {
     return set_arguments(kernel, a.cloths, a.parameters, a.states, a.stats, a.vertex_order, a.moved, a.motion,
-                         a.total_correction, caller.positions, caller.velocities, or_any(caller.contacts, caller),
+                         caller.positions, caller.velocities, or_any(caller.contacts, caller),
                          where_accelerated(a.accelerations, caller));
 }
 

@@ -75,9 +75,11 @@
 // Bends are those of positions this far on in the part, by the velocities of its start: a damping.
 #define APSLK_BENDING_LEAD 0.25f
 
-// What the energy of a whole step may be off by, which the discrete step is (docs/formulation.md, Energy).
+// Energy of a whole step, against what is allowed (docs/formulation.md, Energy). What is let pass: the discrete step is a
+// little off, and a cloth that is near its limits corrects itself.
 #define APSLK_ENERGY_LET_PASS 1.002f
-// A triangle is outside its limits where its area change, or its stretch over the ceiling, is above this.
+#define APSLK_ENERGY_LET_PASS_WITHIN 0.2f
+// An area change, or a stretch over the ceiling, from which on no more than the first of them passes.
 #define APSLK_UNMET 0.05f
 // What a body that is faster than a vertex sets in motion by it, in masses of the vertex.
 #define APSLK_PULLED_ALONG 16.0f

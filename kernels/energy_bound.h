@@ -118,19 +118,22 @@ APSLK_INLINE apslk_drive find_drive(__global float* partials, uint groups, __loc
 }
 
 // m²/s²: what a body adds at most to the square of the velocity of the vertex near it, both in the frame. It pushes
-// along its normal up to its own speed there, and drags along its surface where there is friction. A body that is
-// faster than the vertex also sets in motion what hangs on it.
-APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const float* contacts, uint vertex) {
+// along its normal up to its own speed there. With friction it drags along its surface, by what Coulomb's law gives for
+// the speed that they close at. `pulls`: whether it is faster than the vertex. Then it also sets in motion what hangs
+// on it.
+APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const float* contacts, uint vertex,
+                                 bool* pulls) {
+    *pulls = false;
 #if APSLK_KEEPS_CONTACTS
     const float3 normal = vload4(2ul * vertex, contacts).xyz;
     const float4 surface = vload4(2ul * vertex + 1ul, contacts);
     const float3 body = surface.xyz - frame, own = velocity - frame;
     const float pushing = dot(body, normal), into = dot(own, normal);
-    const float3 slip = along_surface(own, normal), drag = along_surface(body, normal);
     const float pushed = pushing > into ? fmax(pushing * pushing - into * into, 0.0f) : 0.0f;
-    const float dragged = surface.w > 0.0f ? fmax(dot(drag, drag) - dot(slip, slip), 0.0f) : 0.0f;
-    const float pulled = dot(body, body) > dot(own, own) ? APSLK_PULLED_ALONG : 1.0f;
-    return pulled * (pushed + dragged);
+    const float slip = length(along_surface(own, normal)), drag = length(along_surface(body, normal));
+    const float dragged = fmin(drag, slip + fmax(surface.w, 0.0f) * fmax(pushing - into, 0.0f));
+    *pulls = dot(body, body) > dot(own, own);
+    return pushed + fmax(dragged * dragged - slip * slip, 0.0f);
 #else
     (void)velocity;
     (void)frame;
@@ -138,6 +141,12 @@ APSLK_INLINE float added_by_body(float3 velocity, float3 frame, __global const f
     (void)vertex;
     return 0.0f;
 #endif
+}
+
+// kg m²/s², what bodies add to Σ m |u|²: what hangs on vertices that they pull along is the cloth's and counts once,
+// and up to so many times these vertices' own mass.
+APSLK_INLINE float added_by_bodies(float alone, float along, float pulling, float mass) {
+    return alone + along * clamp(mass / fmax(pulling, FLT_MIN), 1.0f, APSLK_PULLED_ALONG);
 }
 
 // J, of all parts: what hinges held at the start, less what they held at the start of the last part of several.
@@ -148,44 +157,50 @@ APSLK_INLINE float bending_given(float at_start, float left, int parts) {
 
 // Σ m |u|² there, kg m²/s².
 typedef struct {
-    float free;                            // at the free end of the step, with what hinges gave
-    float pins;                            // of all mass at the speed of the pins
-    float bodies;                          // what bodies add
-    float unmet, met;                      // as the step left it, of vertices outside their limits and of the others
-    float gained_by_unmet, gained_by_met;  // of that, what vertices have more than at the free end
+    float free;    // at the free end of the step, with what acceleration and hinges gave on the way that the cloth went
+    float pins;    // of all mass at the speed of the pins
+    float bodies;  // what bodies add
+    float left;    // as the step left it
+    float gained;  // of that, what vertices have more than at the free end
 } apslk_energies;
 
-// What vertices keep: a share of their velocities there, and of what they gained of energy.
+// What vertices keep: a share of their velocities there, and of what those that gained have more than at the free end.
 typedef struct {
-    float speed, unmet_gain, met_gain;
+    float speed, gain;
 } apslk_kept_shares;
 
 // Pins bring a cloth to twice their speed at most.
 APSLK_INLINE float allowed_energy(apslk_energies of) {
-    const float free = sqrt(of.free), pins = sqrt(of.pins);
+    const float free = sqrt(fmax(of.free, 0.0f)), pins = sqrt(of.pins);
     const float root = fmax(free, fmin(free + pins, 2.0f * pins)) + sqrt(of.bodies);
     return root * root;
 }
 
-// A cloth that `flies` keeps its momentum: it is slowed as a whole.
-APSLK_INLINE apslk_kept_shares shares_kept_by_energy(apslk_energies of, float allowed, bool flies) {
-    apslk_kept_shares kept = {1.0f, 1.0f, 1.0f};
-    const float left = of.unmet + of.met, over = left - allowed;
-    if (!(of.unmet > 0.0f) || !(left > APSLK_ENERGY_LET_PASS * allowed)) return kept;
-    if (flies) {
-        kept.speed = sqrt(allowed / left);
-        return kept;
-    }
-    kept.unmet_gain = over < of.gained_by_unmet ? 1.0f - over / of.gained_by_unmet : 0.0f;
-    kept.met_gain =
-        over > of.gained_by_unmet ? fmax(1.0f - (over - of.gained_by_unmet) / of.gained_by_met, 0.0f) : 1.0f;
+// Σ m |u|² may be this times what is allowed. What is a little off its limits corrects itself, and the cloth of the
+// discrete step is a little off its energy too. `worst`: by how much the triangle that is furthest from its limits
+// misses them.
+APSLK_INLINE float energy_let_pass(float worst) {
+    const float within = fmax(APSLK_UNMET / fmax(worst, APSLK_AT_REST) - 1.0f, 0.0f);
+    return APSLK_ENERGY_LET_PASS + APSLK_ENERGY_LET_PASS_WITHIN * within;
+}
+
+// A cloth that `flies` keeps its momentum: it is slowed as a whole. So is any other, where that vertices give all that
+// they gained is not enough.
+APSLK_INLINE apslk_kept_shares shares_kept_by_energy(apslk_energies of, float allowed, float worst, bool flies) {
+    apslk_kept_shares kept = {1.0f, 1.0f};
+    const float over = of.left - allowed;
+    if (!(of.left > energy_let_pass(worst) * allowed)) return kept;
+    if (!flies) kept.gain = fmax(1.0f - over / of.gained, 0.0f);
+    if (flies || over > of.gained) kept.speed = sqrt(allowed / (flies ? of.left : of.left - of.gained));
     return kept;
 }
 
-// Of the velocity of a vertex, from squares of its speed there at the end and at the free end of the step.
-APSLK_INLINE float share_of_velocity(apslk_kept_shares kept, bool unmet, float square, float free_square) {
-    const float gain = unmet ? kept.unmet_gain : kept.met_gain;
-    return kept.speed * (square > free_square ? sqrt(gain + (1.0f - gain) * (free_square / square)) : 1.0f);
+// Of a velocity at the end of the step, with that at its free end, in m/s. `drive`: the frame.
+APSLK_INLINE float3 velocity_left(apslk_kept_shares kept, float3 drive, float3 velocity, float3 free_velocity) {
+    const float3 own = velocity - drive, free = free_velocity - drive;
+    if (kept.gain < 1.0f && dot(own, own) > dot(free, free))
+        velocity = free_velocity + kept.gain * (velocity - free_velocity);
+    return kept.speed < 1.0f ? drive + kept.speed * (velocity - drive) : velocity;
 }
 
 #endif

@@ -104,8 +104,13 @@ APSLK_INLINE float3 after_free_part(apslk_free_part part, uint place, float3 vel
     return APSLK_INTEGRATES && inverse_mass > 0.0f ? part.kept * (velocity + gain_of_free_part(part, place)) : velocity;
 }
 
+// m/s, what acceleration adds to the velocity of a vertex that can move.
+APSLK_INLINE float3 gain_of_free_step(apslk_free_step step, uint place) {
+    return with_own_gain(step.gain, step.seconds, step.accelerations, place);
+}
+
 APSLK_INLINE float3 after_free_step(apslk_free_step step, uint place, float3 velocity, float inverse_mass) {
-    const float3 gain = with_own_gain(step.gain, step.seconds, step.accelerations, place);
+    const float3 gain = gain_of_free_step(step, place);
     return APSLK_INTEGRATES && inverse_mass > 0.0f ? step.kept * velocity + gain : velocity;
 }
 

@@ -29,7 +29,6 @@ typedef std::int32_t apslk_int;
 // Runs of the start's errors: of areas, and with a stretch ceiling of excesses, as they were and as they are held.
 #define APSLK_START_EXCESS 1
 #define APSLK_HELD_EXCESS 2
-// At the end of a whole step the first run holds 1 for a triangle that is or was outside its limits, and 0 otherwise.
 
 // Where a cloth lies in the limiter's arrays. Fixed when the limiter is built.
 typedef struct {
@@ -128,8 +127,7 @@ typedef struct {
     float mass;                      // kg, of vertices that move
     apslk_int flies;                 // nothing holds the cloth or is within its reach
     float speed_kept;                // share of all velocities there
-    float unmet_gain_kept;           // of what a vertex at a triangle outside its limits gained of energy there
-    float met_gain_kept;             // and any other
+    float gain_kept;                 // of what velocities of vertices that gained have more than at the free end
 } apslk_solve_state;
 
 // Partial results of the work-groups of a launch, one float a group for each of these.
@@ -151,23 +149,24 @@ typedef struct {
 #define APSLK_PARTIAL_MASS_RATIO 15     // their greatest mass over the one given
 #define APSLK_PARTIAL_EXTENT 16         // greatest |coordinate| at x̃ + Δt ṽ, m
 #define APSLK_PARTIAL_MAX_STRETCH 17
-#define APSLK_PARTIAL_MAX_EXCESS 18       // of stretch over the ceiling
-#define APSLK_PARTIAL_SQUARED_EXCESS 19   // the capped change has those of the excess too
-#define APSLK_PARTIAL_STRETCH_ROWS 20     // those with a multiplier above zero
-#define APSLK_PARTIAL_MASS 21             // kg, of vertices that can move
-#define APSLK_PARTIAL_MOMENTUM 22         // kg m/s, of those at the free end of the step; x, y and z
-#define APSLK_PARTIAL_GREATEST_PIN 25     // m/s, velocity; x, y and z
-#define APSLK_PARTIAL_LEAST_PIN 28        // likewise, with its sign turned
-#define APSLK_PARTIAL_TOUCHES 31          // whether a body is within reach of a vertex
-#define APSLK_PARTIAL_FREE_ENERGY 32      // Σ m |u|² at the free end of the step, in the frame of what drives the cloth
-#define APSLK_PARTIAL_UNMET_ENERGY 33     // and as the small steps left it, of vertices outside their limits
-#define APSLK_PARTIAL_MET_ENERGY 34       // and of the others
-#define APSLK_PARTIAL_ADDED_BY_BODIES 35  // kg m²/s², what bodies can add to Σ m |u|²
-#define APSLK_PARTIAL_BENDING_ENERGY 36   // J, at the start of the step
-#define APSLK_PARTIAL_BENDING_LEFT 37     // J, at the start of the last part of several
-#define APSLK_PARTIAL_UNMET_GAIN 38       // of those energies, what vertices have more at the end than at the free end
-#define APSLK_PARTIAL_MET_GAIN 39
-#define APSLK_PARTIAL_KINDS 40
+#define APSLK_PARTIAL_MAX_EXCESS 18      // of stretch over the ceiling
+#define APSLK_PARTIAL_SQUARED_EXCESS 19  // the capped change has those of the excess too
+#define APSLK_PARTIAL_STRETCH_ROWS 20    // those with a multiplier above zero
+#define APSLK_PARTIAL_MASS 21            // kg, of vertices that can move
+#define APSLK_PARTIAL_MOMENTUM 22        // kg m/s, of those at the free end of the step; x, y and z
+#define APSLK_PARTIAL_GREATEST_PIN 25    // m/s, velocity; x, y and z
+#define APSLK_PARTIAL_LEAST_PIN 28       // likewise, with its sign turned
+#define APSLK_PARTIAL_TOUCHES 31         // whether a body is within reach of a vertex
+#define APSLK_PARTIAL_FREE_ENERGY 32     // Σ m |u|² at the free end of the step, in the frame of what drives the cloth
+#define APSLK_PARTIAL_LEFT_ENERGY 33     // and as the small steps left it
+#define APSLK_PARTIAL_GAINED_ENERGY 34   // of that, what vertices have more than at the free end
+#define APSLK_PARTIAL_ADDED_ALONE 35     // kg m²/s², what bodies add to it, of vertices faster than their body
+#define APSLK_PARTIAL_ADDED_ALONG 36     // and of those that their body pulls along
+#define APSLK_PARTIAL_PULLING 37         // kg, of these
+#define APSLK_PARTIAL_BENDING_ENERGY 38  // J, at the start of the step
+#define APSLK_PARTIAL_BENDING_LEFT 39    // J, at the start of the last part of several
+#define APSLK_PARTIAL_WORST_MISS 40      // by how much a triangle misses its limits, at the end or start of the step
+#define APSLK_PARTIAL_KINDS 41
 
 // Triangle arrays are padded with zeros to this many entries, so that vector loads need no remainder.
 #define APSLK_TRIANGLE_ALIGNMENT 16

@@ -18,37 +18,38 @@ APSLK_INLINE float stretch_rows_at_work(apslk_cloth cloth, bool active, __global
 #endif
 
 #if APSLK_INTEGRATES
-// Triangles outside their limits: those that a whole step leaves, or began with, whose area change or stretch over the
-// ceiling is above APSLK_UNMET. `errors`: of the start of the step, as find_start_errors leaves them; the first run
-// becomes 1 for a triangle outside its limits and 0 otherwise. Reference: apsl::reference, unmet_vertices.
-APSLK_INLINE void mark_unmet(apslk_cloth cloth, bool active, __global const uint* triangles,
-                             __global const float4* moved, __global const float* rest, __global float* errors) {
+// By how much a triangle of this work-item misses its limits at most: its area change, or stretch over the ceiling, as
+// a whole step leaves it or began with it. `errors`: of the start of the step, as find_start_errors leaves them.
+// Reference: apsl::reference, worst_miss.
+APSLK_INLINE float worst_miss(apslk_cloth cloth, bool active, __global const uint* triangles,
+                              __global const float4* moved, __global const float* rest, __global const float* errors) {
     const apslk_range range = share_of(blocks_of(cloth), active);
+    lanes worst = 0.0f;
     for (uint block = range.first; block < range.end; block += APSLK_WORK_GROUP_SIZE) {
         const uint a = cloth.triangle_begin + block * APSLK_LANES;
         const apslk_triangle_geometry triangle = load_triangles(triangles, moved, a);
         const lanes rest_area = load_lanes(rest, a);
         const lanes at_start = select((lanes)(0.0f), fabs(load_lanes(errors, a)) / rest_area, rest_area > 0.0f);
-        lanes worst = fmax(at_start, relative_change(triangle, rest_area));
+        worst = fmax(worst, fmax(at_start, relative_change(triangle, rest_area)));
 #if APSLK_LIMITS_STRETCH
         const apslk_rest_shape shape = load_rest_shape(cloth, rest, a);
         worst = fmax(worst, stretch_excess(principal_stretch(triangle, shape).value, shape.ceiling));
         worst = fmax(worst, load_lanes(errors + APSLK_START_EXCESS * cloth.run, a));
 #endif
-        store_lanes(select((lanes)(0.0f), (lanes)(1.0f), worst > APSLK_UNMET), errors, a);
     }
+    return max_of_lanes(worst);
 }
 #endif
 
-// What a call leaves behind, and the vertices that weighed more than given; of a whole step the triangles that are
-// outside their limits, too.
+// What a call leaves behind, and the vertices that weighed more than given; of a whole step by how much it misses its
+// limits, too.
 // Moves 12 B indices, about 8 B positions, 4 B rest area read a triangle; with raised masses 32 B a vertex. A whole
-// step moves as much again, 4 B start error and, with a ceiling, 20 B rest shape and 4 B excess read, and 4 B written.
+// step moves as much again, 4 B start error and, with a ceiling, 20 B rest shape and 4 B excess read.
 APSLK_KERNEL void measure_area_change(__global const apslk_cloth* cloths, __global const apslk_parameters* parameters,
                                       __global float* partials, __global const uint* triangles,
                                       __global const float4* moved, __global const float4* motion,
                                       __global const float* rest, __global const float* pressure,
-                                      __global float* start_errors) {
+                                      __global const float* start_errors) {
     APSLK_SCRATCH;
     const uint c = (uint)get_group_id(1);
     store_area_partials(measure_triangles(cloths[c], parameters[c].enabled, triangles, moved, rest), partials, scratch);
@@ -59,7 +60,9 @@ APSLK_KERNEL void measure_area_change(__global const apslk_cloth* cloths, __glob
     (void)pressure;
 #endif
 #if APSLK_INTEGRATES
-    mark_unmet(cloths[c], parameters[c].enabled, triangles, moved, rest, start_errors);
+    store_partial(
+        partials, APSLK_PARTIAL_WORST_MISS,
+        group_max(worst_miss(cloths[c], parameters[c].enabled, triangles, moved, rest, start_errors), scratch));
 #else
     (void)start_errors;
 #endif

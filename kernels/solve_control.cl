@@ -93,11 +93,12 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global const ap
     const float free_energy = sum_partials(partials, APSLK_PARTIAL_FREE_ENERGY, groups, scratch);
     const float bent = sum_partials(partials, APSLK_PARTIAL_BENDING_ENERGY, groups, scratch);
     const float left_bent = sum_partials(partials, APSLK_PARTIAL_BENDING_LEFT, groups, scratch);
-    const float unmet_energy = sum_partials(partials, APSLK_PARTIAL_UNMET_ENERGY, groups, scratch);
-    const float met_energy = sum_partials(partials, APSLK_PARTIAL_MET_ENERGY, groups, scratch);
-    const float unmet_gain = sum_partials(partials, APSLK_PARTIAL_UNMET_GAIN, groups, scratch);
-    const float met_gain = sum_partials(partials, APSLK_PARTIAL_MET_GAIN, groups, scratch);
-    const float added_by_bodies = sum_partials(partials, APSLK_PARTIAL_ADDED_BY_BODIES, groups, scratch);
+    const float left_energy = sum_partials(partials, APSLK_PARTIAL_LEFT_ENERGY, groups, scratch);
+    const float gained_energy = sum_partials(partials, APSLK_PARTIAL_GAINED_ENERGY, groups, scratch);
+    const float alone = sum_partials(partials, APSLK_PARTIAL_ADDED_ALONE, groups, scratch);
+    const float along = sum_partials(partials, APSLK_PARTIAL_ADDED_ALONG, groups, scratch);
+    const float pulling = sum_partials(partials, APSLK_PARTIAL_PULLING, groups, scratch);
+    const float worst = max_partials(partials, APSLK_PARTIAL_WORST_MISS, groups, scratch);
 #else
     (void)parameters;
 #endif
@@ -121,25 +122,20 @@ APSLK_KERNEL void end_call(__global const apslk_cloth* cloths, __global const ap
     states[c].discarded = diverged || verdict.worse || none;
 #if APSLK_INTEGRATES
     const float gave = bending_given(bent, left_bent, parameters[c].small_steps);
-    const apslk_energies energies = {free_energy + 2.0f * gave,
-                                     states[c].pins * states[c].pins * states[c].mass,
-                                     added_by_bodies,
-                                     unmet_energy,
-                                     met_energy,
-                                     unmet_gain,
-                                     met_gain};
+    const apslk_energies energies = {free_energy + 2.0f * gave, states[c].pins * states[c].pins * states[c].mass,
+                                     added_by_bodies(alone, along, pulling, states[c].mass), left_energy,
+                                     gained_energy};
     const float allowed = allowed_energy(energies);
-    const apslk_kept_shares kept = shares_kept_by_energy(energies, allowed, states[c].flies);
-    const bool slowed = !states[c].discarded && kept.speed * kept.unmet_gain * kept.met_gain < 1.0f;
+    const apslk_kept_shares kept = shares_kept_by_energy(energies, allowed, worst, states[c].flies);
+    const bool slowed = !states[c].discarded && kept.speed * kept.gain < 1.0f;
     states[c].speed_kept = kept.speed;
-    states[c].unmet_gain_kept = kept.unmet_gain;
-    states[c].met_gain_kept = kept.met_gain;
+    states[c].gain_kept = kept.gain;
 #endif
     if (stats[c].status == APSLK_STATUS_OFF) return;
     stats[c].raised_vertices = (uint)raised;
     stats[c].greatest_mass_ratio = mass_ratio;
 #if APSLK_INTEGRATES
-    stats[c].energy_kept = slowed ? allowed / (unmet_energy + met_energy) : 1.0f;
+    stats[c].energy_kept = slowed ? allowed / left_energy : 1.0f;
 #else
     stats[c].energy_kept = 1.0f;
 #endif

@@ -315,12 +315,11 @@ APSLK_INLINE void store_positions(apslk_cloth cloth, bool active, __global const
 }
 
 // Where a whole step ends. `limited`: as moved and motion have it, with the velocity that `kept` leaves in a frame that
-// moves with `drive`; otherwise as `free` and contacts have it. The w of `unmet` is above 0 for a vertex at a triangle
-// outside its limits. A vertex whose end is not finite stays.
+// moves with `drive`; otherwise as `free` and contacts have it. A vertex whose end is not finite stays.
 APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited, float3 drive, apslk_kept_shares kept,
                                     float time_step, apslk_free_step free, __global const uint* vertex_order,
                                     __global const float4* moved, __global const float4* motion,
-                                    __global const float4* unmet, __global float* positions, __global float* velocities,
+                                    __global float* positions, __global float* velocities,
                                     __global const float* contacts) {
     const apslk_range range = share_of(cloth.vertex_count, active);
     for (uint v = range.first; v < range.end; v += APSLK_WORK_GROUP_SIZE) {
@@ -330,12 +329,9 @@ APSLK_INLINE void store_end_of_step(apslk_cloth cloth, bool active, bool limited
         const bool moves = limited && step.w > 0.0f;
         const apslk_moving_vertex unlimited =
             end_of_step(positions, velocities, place, i, step.w, time_step, free, contacts);
-        const float3 free_after =
-            unlimited.touches ? unlimited.motion * (1.0f / time_step) : after_free_step(free, place, before, step.w);
-        const float3 velocity = step.xyz * (1.0f / time_step), own = velocity - drive;
-        const float3 free_own = after_free_step(free, place, before, step.w) - drive;
-        const float share = share_of_velocity(kept, unmet[place].w > 0.0f, dot(own, own), dot(free_own, free_own));
-        const float3 limited_after = share < 1.0f ? drive + share * own : velocity;
+        const float3 free_velocity = after_free_step(free, place, before, step.w);
+        const float3 free_after = unlimited.touches ? unlimited.motion * (1.0f / time_step) : free_velocity;
+        const float3 limited_after = velocity_left(kept, drive, step.xyz * (1.0f / time_step), free_velocity);
         const float3 after = moves ? limited_after : free_after;
         const float3 x = moves ? end.xyz : unlimited.position;
         if (!all(isfinite(after)) || !all(isfinite(x))) continue;

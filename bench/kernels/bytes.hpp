@@ -61,8 +61,8 @@ constexpr std::array traffic_table{
     Traffic{"measure_area_change", 16, 16, 0},
     // vertex_order, moved, position, velocity read, velocity written
     Traffic{"update_velocities", 56, 0, 0},
-    // vertex_order, motion, velocity read
-    Traffic{"measure_energy", 32, 0, 0},
+    // vertex_order, moved, motion, position, velocity read
+    Traffic{"measure_energy", 60, 0, 0},
     // vertex_order, moved, motion, position, velocity read, position and velocity written
     Traffic{"store_step", 84, 0, 0},
 };

@@ -78,8 +78,8 @@ std::string summary_text(const RunReport& report) {
     }
     if (summary.slowed_frames > 0) {
         text += format(
-            "  slowed                 in %d of %zu frames, down to %.2g of the kinetic energy: outside its limits the "
-            "cloth would have gained energy from nothing\n",
+            "  slowed                 in %d of %zu frames, down to %.2g of the kinetic energy: the cloth would "
+            "have gained energy from nothing\n",
             summary.slowed_frames, report.frames.size(), summary.energy_kept);
     }
     if (report.over_stretch.count > 0) {

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,18 +38,40 @@ struct Drive {
 };
 
 /// m²/s²: what a body adds at most to the square of a vertex' velocity, both in the frame. It pushes along its normal
-/// up to its own speed there, and drags along its surface where there is friction. A body that is faster than the
-/// vertex also sets in motion what hangs on it.
+/// up to its own speed there. With friction it drags along its surface, by what Coulomb's law gives for the speed that
+/// they close at.
 template <class Real>
 double added_by_body(const Contact<Real>& contact, const Vector3<double>& velocity, const Vector3<double>& frame) {
     const Vector3<double> body = contact.velocity.template cast<double>() - frame, own = velocity - frame,
                           normal = contact.normal.template cast<double>();
     const double pushing = body.dot(normal), into = own.dot(normal);
     double added = pushing > into ? std::max(pushing * pushing - into * into, 0.0) : 0.0;
-    if (contact.friction > Real(0))
-        added += std::max((body - pushing * normal).squaredNorm() - (own - into * normal).squaredNorm(), 0.0);
-    return body.squaredNorm() > own.squaredNorm() ? double{APSLK_PULLED_ALONG} * added : added;
+    if (contact.friction > Real(0)) {
+        const double slip = (own - into * normal).norm(),
+                     rubbed = slip + static_cast<double>(contact.friction) * std::max(pushing - into, 0.0),
+                     dragged = std::min((body - pushing * normal).norm(), rubbed);
+        added += std::max(dragged * dragged - slip * slip, 0.0);
+    }
+    return added;
 }
+
+/// Whether a body is faster than a vertex in the frame: then it also sets in motion what hangs on the vertex.
+template <class Real>
+bool pulls_along(const Contact<Real>& contact, const Vector3<double>& velocity, const Vector3<double>& frame) {
+    return (contact.velocity.template cast<double>() - frame).squaredNorm() > (velocity - frame).squaredNorm();
+}
+
+/// What bodies add to Σ m |u|², kg m²/s².
+struct AddedByBodies {
+    double alone = 0.0, along = 0.0;  ///< to vertices that are faster than their body, and to those that it pulls along
+    double pulling = 0.0;             ///< kg, of the latter
+
+    /// What hangs on a vertex is the cloth's and counts once, and up to so many times the vertex' own mass.
+    double of_cloth(double mass) const {
+        return alone + along * std::clamp(mass / std::max(pulling, std::numeric_limits<double>::min()), 1.0,
+                                          double{APSLK_PULLED_ALONG});
+    }
+};
 
 /// The frame is the middle of the box around the velocities of the pins, and they drive by half its diagonal. Of a
 /// cloth without pins it is its own mean velocity, or, where a body is within its reach, what stands still.
@@ -83,11 +105,25 @@ Drive drive(const Buffers<Real>& buffers, const FreeEnd<Real>& free) {
         found.velocity = momentum / found.mass;
         found.flies = true;
     }
-    for (std::size_t i = 0; touches && i < buffers.inverse_masses.size(); ++i)
-        if (is_near(i))
-            found.bodies += added_by_body(Contact<Real>(buffers.contacts, i), velocity(i), found.velocity) /
-                            static_cast<double>(buffers.inverse_masses[i]);
+    AddedByBodies added;
+    for (std::size_t i = 0; touches && i < buffers.inverse_masses.size(); ++i) {
+        if (!is_near(i)) continue;
+        const Contact<Real> contact(buffers.contacts, i);
+        const double mass = 1.0 / static_cast<double>(buffers.inverse_masses[i]);
+        const bool pulls = pulls_along(contact, velocity(i), found.velocity);
+        (pulls ? added.along : added.alone) += mass * added_by_body(contact, velocity(i), found.velocity);
+        if (pulls) added.pulling += mass;
+    }
+    found.bodies = added.of_cloth(found.mass);
     return found;
+}
+
+/// Σ m |u|² may be this times what is allowed. What is a little off its limits corrects itself, and the cloth of the
+/// discrete step is a little off its energy too. `worst`: by how much the triangle that is furthest from its limits
+/// misses them.
+inline double energy_let_pass(double worst) {
+    const double within = std::max(double{APSLK_UNMET} / std::max(worst, double{APSLK_AT_REST}) - 1.0, 0.0);
+    return double{APSLK_ENERGY_LET_PASS} + double{APSLK_ENERGY_LET_PASS_WITHIN} * within;
 }
 
 /// J, of all parts: what hinges held at the start, less what they held at the start of the last part of several.
@@ -102,47 +138,62 @@ class EnergyBound {
 public:
     EnergyBound() = default;
     EnergyBound(const Buffers<Real>& buffers, const FreeEnd<Real>& free)
-        : inverse_masses_(buffers.inverse_masses), drive_(drive(buffers, free)), free_(inverse_masses_.size()) {
-        for (std::size_t i = 0; i < free_.size(); ++i) free_[i] = square(free.velocities, i);
+        : inverse_masses_(buffers.inverse_masses),
+          free_velocities_(free.velocities.begin(), free.velocities.end()),
+          drive_(drive(buffers, free)) {
+        for (std::size_t i = 0; i < inverse_masses_.size(); ++i) allowed_ += square(free_velocities_, i);
     }
 
     /// What hinges gave, J.
-    void add_bending(double energy) { bending_ += 2.0 * energy; }
+    void add_bending(double energy) { allowed_ += 2.0 * energy; }
 
-    /// Where the cloth has more energy than it may, and some of it is outside its limits, takes from vertices there
-    /// what they gained over the step without a limit, and from the others where that is not enough. A cloth that flies
-    /// keeps its momentum: it is slowed as a whole, in the frame of what drives it. `unmet`: 1 for a vertex at a
-    /// triangle outside its limits, 0 for any other, [V]. Returns the share of the cloth's energy there that is left.
-    double apply(std::span<Real> velocities, std::span<const std::uint8_t> unmet) const {
-        std::vector<double> squares(free_.size());
-        double free = bending_, all = 0.0, of_unmet = 0.0, gained_unmet = 0.0, gained_met = 0.0;
-        for (std::size_t i = 0; i < free_.size(); ++i) {
-            squares[i] = square(velocities, i);
-            free += free_[i];
-            all += squares[i];
-            if (unmet[i] != 0) of_unmet += squares[i];
-            (unmet[i] != 0 ? gained_unmet : gained_met) += std::max(squares[i] - free_[i], 0.0);
+    /// What acceleration gives on the way that the cloth went, in place of what it gives to the step without a limit.
+    /// `change`: m, of component n of all positions over the step; `gained`: m/s, what acceleration adds to that of
+    /// velocities.
+    template <class Change, class Gained>
+    void follow(std::span<const Real> start_velocities, double time_step, const Change& change, const Gained& gained) {
+        for (std::size_t n = 0; n < free_velocities_.size(); ++n)
+            if (inverse_masses_[n / 3] > Real(0)) {
+                const double twice_mean =
+                    static_cast<double>(start_velocities[n]) + static_cast<double>(free_velocities_[n]);
+                allowed_ += gained(n) * (2.0 * change(n) / time_step - twice_mean) /
+                            static_cast<double>(inverse_masses_[n / 3]);
+            }
+    }
+
+    /// Where the cloth has more energy than it may, leads velocities of vertices that gained over the step without a
+    /// limit back to theirs there, and slows the cloth as a whole where that is not enough, in the frame of what drives
+    /// it. A cloth that flies keeps its momentum: it is only slowed as a whole. `worst`: by how much the triangle that
+    /// is furthest from its limits misses them. Returns the share of the cloth's energy there that is left.
+    double apply(std::span<Real> velocities, double worst) const {
+        std::vector<double> gains(inverse_masses_.size());
+        double left = 0.0, gained = 0.0;
+        for (std::size_t i = 0; i < gains.size(); ++i) {
+            const double energy = square(velocities, i);
+            gains[i] = std::max(energy - square(free_velocities_, i), 0.0);
+            left += energy;
+            gained += gains[i];
         }
-        const double pins = drive_.pins * std::sqrt(drive_.mass), root = std::sqrt(free);
+        const double free = std::max(allowed_, 0.0), pins = drive_.pins * std::sqrt(drive_.mass),
+                     root = std::sqrt(free);
         const double allowed =
             std::pow(std::max(root, std::min(root + pins, 2.0 * pins)) + std::sqrt(drive_.bodies), 2);
-        if (!(of_unmet > 0.0) || !(all > double{APSLK_ENERGY_LET_PASS} * allowed)) return 1.0;
-        const double over = all - allowed;
-        const double unmet_share = over < gained_unmet ? 1.0 - over / gained_unmet : 0.0,
-                     met_share = over > gained_unmet ? std::max(1.0 - (over - gained_unmet) / gained_met, 0.0) : 1.0;
-        for (std::size_t i = 0; i < free_.size(); ++i) {
-            const double gain = unmet[i] != 0 ? unmet_share : met_share;
-            double share = 1.0;
-            if (drive_.flies)
-                share = std::sqrt(allowed / all);
-            else if (squares[i] > free_[i])
-                share = std::sqrt(gain + (1.0 - gain) * free_[i] / squares[i]);
-            const auto kept = static_cast<Real>(share);
+        if (!(left > energy_let_pass(worst) * allowed)) return 1.0;
+        const double over = left - allowed;
+        const double gain_kept = drive_.flies ? 1.0 : std::max(1.0 - over / gained, 0.0);
+        const double rest = drive_.flies ? left : left - gained;
+        const auto speed_kept = static_cast<Real>(drive_.flies || over > gained ? std::sqrt(allowed / rest) : 1.0);
+        const Vector3<Real> frame = drive_.velocity.template cast<Real>();
+        for (std::size_t i = 0; i < gains.size(); ++i) {
+            if (!(inverse_masses_[i] > Real(0))) continue;
             Eigen::Map<Vector3<Real>> velocity(velocities.data() + 3 * i);
-            const Vector3<Real> frame = drive_.velocity.template cast<Real>();
-            if (inverse_masses_[i] > Real(0) && kept < Real(1)) velocity = frame + kept * (velocity - frame);
+            if (gains[i] > 0.0 && gain_kept < 1.0) {
+                const Vector3<Real> free_velocity = position(std::span<const Real>(free_velocities_), i);
+                velocity = free_velocity + static_cast<Real>(gain_kept) * (velocity - free_velocity);
+            }
+            if (speed_kept < Real(1)) velocity = frame + speed_kept * (velocity - frame);
         }
-        return allowed / all;
+        return allowed / left;
     }
 
 private:
@@ -154,9 +205,9 @@ private:
     }
 
     std::span<const Real> inverse_masses_;
+    std::vector<Real> free_velocities_;  ///< at the end of the step without a limit, [3V]
     Drive drive_;
-    std::vector<double> free_;  ///< at the end of the step without a limit, [V]
-    double bending_ = 0.0;
+    double allowed_ = 0.0;  ///< Σ m |u|², but for what drives the cloth
 };
 
 }  // namespace apsl::reference

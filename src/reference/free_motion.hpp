@@ -61,9 +61,11 @@ struct FreeStep {
         }
     }
 
+    /// m/s, what acceleration adds to component n of the velocities of all vertices.
+    Real gain(std::size_t n) const { return gains * part.gain(n); }
     /// Velocity at the end.
     Real end(Real velocity, std::size_t n, std::span<const Real> inverse_masses) const {
-        return inverse_masses[n / 3] > Real(0) ? kept * velocity + gains * part.gain(n) : velocity;
+        return inverse_masses[n / 3] > Real(0) ? kept * velocity + gain(n) : velocity;
     }
     /// Displacement over the time step.
     Real mean(Real velocity, std::size_t n, std::span<const Real> inverse_masses) const {

@@ -18,7 +18,7 @@
 #include "reference/matrix.hpp"
 #include "reference/stretch_limiting.hpp"
 #include "reference/tethers.hpp"
-#include "reference/unmet_limits.hpp"
+#include "reference/worst_miss.hpp"
 
 #include "chebyshev_products.hpp"
 #include "fields.hpp"
@@ -375,8 +375,13 @@ struct BasicStrainLimiter<Real>::Implementation {
                 return options.limits_stretch ? std::max(stretches.start_excess(a), stretches.excess(a, moved))
                                               : Real(0);
             };
-            stats.energy_kept = static_cast<float>(energy.apply(
-                velocities, unmet_vertices<Real>(*topology, buffers.rest_areas, start_error, geometry, excess)));
+            const FreeStep<Real> free(parameters, buffers.accelerations);
+            energy.follow(
+                buffers.velocities, static_cast<double>(time_step),
+                [&](std::size_t n) { return static_cast<double>(moved[n] - buffers.positions[n]); },
+                [&](std::size_t n) { return static_cast<double>(free.gain(n)); });
+            stats.energy_kept = static_cast<float>(
+                energy.apply(velocities, worst_miss<Real>(buffers.rest_areas, start_error, geometry, excess)));
         }
         if (!all_finite<Real>(moved) || !all_finite<Real>(velocities)) return false;
         std::copy(moved.begin(), moved.end(), buffers.end_positions.begin());

@@ -232,12 +232,13 @@ double greatest_speed(const std::vector<double>& velocities) {
     return greatest;
 }
 
-/// J, in the frame of what stands still, with what free fall adds in a step of `time_step`.
-double free_energy(const MovingCloth& cloth, const Parameters& parameters) {
-    MovingCloth free = cloth;
-    for (std::size_t n = 0; n < free.velocities.size(); ++n)
-        free.velocities[n] += static_cast<double>(parameters.time_step * parameters.acceleration[n % 3]);
-    return kinetic_energy(free);
+/// J, of motion and height, in the frame of what stands still.
+double energy_in_gravity(const MovingCloth& cloth) {
+    double energy = kinetic_energy(cloth);
+    for (std::size_t i = 0; i < cloth.inverse_masses.size(); ++i)
+        if (cloth.inverse_masses[i] > 0.0)
+            energy += static_cast<double>(gravity) * cloth.positions[3 * i + 1] / cloth.inverse_masses[i];
+    return energy;
 }
 
 /// Of a call for which a few large triangles are 0.2 to 0.35 over their ceiling. Two have two pinned corners each,
@@ -271,8 +272,7 @@ TEST_CASE("a whole step: what starts far over its ceiling, and cannot get below,
             }
 }
 
-TEST_CASE("a whole step: a cloth at pins that stand still has no more energy than it would have without limits",
-          "[filter][whole_step][energy]") {
+TEST_CASE("a whole step: a cloth at pins that stand still gains no energy", "[filter][whole_step][energy]") {
     // Crumpled, and stretched away from its pins: what corrects that leaves the cloth no faster.
     for (const double stretch : {1.0, 1.3}) {
         MovingCloth cloth = flat_sheet(17, {0, 16});
@@ -287,12 +287,14 @@ TEST_CASE("a whole step: a cloth at pins that stand still has no more energy tha
         StrainLimiter limiter(device().context, device().id, cloth.topology, with_ceiling);
         const Parameters parameters{.stretch_ceiling = 1.05f, .acceleration = {0.0f, -gravity, 0.0f}};
         for (int frame = 0; frame < 20; ++frame) {
-            const double free = free_energy(cloth, parameters);
+            const double before = energy_in_gravity(cloth);
             const Ended end = step_on_device(limiter, cloth, with_ceiling, parameters);
             cloth.positions = end.positions;
             cloth.velocities = end.velocities;
-            CAPTURE(stretch, frame, free, end.stats.max_area_change, end.stats.max_stretch, end.stats.status);
-            CHECK(kinetic_energy(cloth) <= 1.003 * free);
+            CAPTURE(stretch, frame, before, kinetic_energy(cloth), end.stats.max_area_change, end.stats.max_stretch,
+                    end.stats.status);
+            // Within its limits a little passes: what is left of the crumples.
+            CHECK(energy_in_gravity(cloth) <= before + 0.04 * kinetic_energy(cloth) + 1e-5);
             CHECK(end.stats.status == Status::ok);
             if (frame >= 10) CHECK(end.stats.max_area_change < 0.005f);
             if (frame >= 10) CHECK(end.stats.max_stretch < 1.06f);

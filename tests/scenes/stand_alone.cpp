@@ -345,11 +345,11 @@ TEST_CASE("pins that come near to one another, or draw a triangle apart, do not 
                       apart = moved(144, "[-0.2, 0, 0]", "0.3") + ", " + moved(145, "[0.2, 0, 0]", "0.3") + ", " +
                               moved(161, "[0, 0, 0.2]", "0.3");
     for (const auto& [document, greatest_speed, greatest_gain] :
-         {Pins{near.c_str(), 25.0, 0.1}, Pins{apart.c_str(), 60.0, 1.0}})
+         {Pins{near.c_str(), 15.0, 0.05}, Pins{apart.c_str(), 10.0, 0.1}})
         for (const char* stand_alone : {"{}", R"({"tethers": 0})"}) {
             const Scene scene = parse_scene(
                 nlohmann::json::parse(
-                    R"({"mesh": {"grid": {"vertices": [17, 17], "plane": "horizontal", "diagonals": "alternating", "diagonals": "alternating"}},
+                    R"({"mesh": {"grid": {"vertices": [17, 17], "plane": "horizontal", "diagonals": "alternating"}},
                         "density": 0.2, "start": {"random": 0.001}, "strain_limiting": {"stretch_ceiling": 1.1},
                         "integrator": {"stand_alone": )" +
                     std::string(stand_alone) + R"(}, "pins": [)" + document + "]}"),
@@ -408,6 +408,71 @@ TEST_CASE("energy: pins that only turn slowly do not feed a torn spot step by st
     CHECK(std::any_of(turned.frames.begin(), turned.frames.end(), slowed));
 }
 
+TEST_CASE("energy: pins that spread a little beyond the ceiling do not shake the cloth") {
+    // The top row is spread to 1.14 of its width in 0.3 s. Rows over their ceiling by 0.04 would throw it about with
+    // 0.3 to 8 J, the more the shorter the step.
+    std::string pins;
+    for (int i = 0; i <= 16; ++i)
+        pins += (i > 0 ? ", " : "") + std::string(R"({"vertices": [)") + std::to_string(i) +
+                R"(], "motion": {"start": 0.1, "stop": 0.4, "translate": {"velocity": [)" +
+                std::to_string(0.4667 * i / 16) + ", 0, 0]}}}";
+    for (const auto& [time_step, frames] : {std::pair("0.016666667", 36), {"0.004166667", 144}}) {
+        const Scene scene = parse_scene(
+            nlohmann::json::parse(
+                R"({"mesh": {"grid": {"vertices": [17, 17], "plane": "vertical", "diagonals": "alternating"}},
+                "density": 0.2, "start": {"random": 0.002}, "integrator": {"stand_alone": {}}, "colliders": [],
+                "strain_limiting": {"stretch_ceiling": 1.1}, "time_step": )" +
+                std::string(time_step) + R"(, "pins": [)" + pins + "]}"),
+            "scene.json");
+        double kinetic = 0.0;
+        for (const FrameReport& frame : run(scene, Backend::opencl, frames).frames)
+            kinetic = std::max(kinetic, frame.energy.kinetic);
+        CAPTURE(time_step, kinetic);
+        CHECK(kinetic < 0.08);
+    }
+}
+
+TEST_CASE("energy: a sheet that is pinned all around and too large for that springs out gently") {
+    // Its rest areas are 1.06 of its areas. In 1/240 s it would spring out with 8 J.
+    for (const auto& [time_step, frames] : {std::pair("0.016666667", 45), {"0.004166667", 180}}) {
+        const Scene scene =
+            parse_scene(nlohmann::json::parse(
+                            R"({"mesh": {"grid": {"vertices": [17, 17], "plane": "horizontal"}}, "density": 0.2,
+                "start": {"rest_areas": 1.06, "random": 0.001}, "integrator": {"stand_alone": {}}, "colliders": [],
+                "strain_limiting": {"stretch_ceiling": 1.01}, "time_step": )" +
+                            std::string(time_step) +
+                            R"(, "pins": [{"box": {"max": [-0.49, 9, 9]}}, {"box": {"min": [0.49, -9, -9]}},
+                             {"box": {"max": [9, 9, -0.49]}}, {"box": {"min": [-9, -9, 0.49]}}]})"),
+                        "scene.json");
+        double kinetic = 0.0, gravity = 0.0;
+        for (const FrameReport& frame : run(scene, Backend::opencl, frames).frames) {
+            kinetic = std::max(kinetic, frame.energy.kinetic);
+            gravity = frame.energy.gravity;
+        }
+        CAPTURE(time_step, kinetic, gravity);
+        CHECK(kinetic < 0.05);
+        CHECK(gravity < -0.01);  // it hangs through
+    }
+}
+
+TEST_CASE("energy: a torn sheet that its pins draw over a rough floor is not fed by the floor") {
+    // All three corners of a triangle part by 5 cm in a second while they walk at 1.5 m/s; the floor is 0.4 m below.
+    const Scene scene =
+        parse_scene(nlohmann::json::parse(
+                        R"({"mesh": {"grid": {"vertices": [17, 17], "plane": "horizontal", "diagonals": "alternating"}},
+            "density": 0.2, "start": {"random": 0.001}, "integrator": {"stand_alone": {}},
+            "strain_limiting": {"stretch_ceiling": 1.1},
+            "pins": [{"vertices": [144], "motion": {"translate": {"velocity": [1.45, 0, 0]}}},
+                     {"vertices": [145], "motion": {"translate": {"velocity": [1.55, 0, 0]}}},
+                     {"vertices": [161], "motion": {"translate": {"velocity": [1.5, 0, 0.05]}}}],
+            "colliders": [{"plane": {"point": [0, -0.4, 0], "normal": [0, 1, 0], "friction": 0.5}}]})"),
+                    "scene.json");
+    double kinetic = 0.0;
+    for (const FrameReport& frame : run(scene, Backend::opencl, 60).frames)
+        kinetic = std::max(kinetic, frame.energy.kinetic);
+    CHECK(kinetic < 1.5);  // J; at 1.5 m/s it has 0.23, and 9 were it fed
+}
+
 TEST_CASE("energy: a clamped strip swings on at the same rate, however few its sub-steps") {
     // Its clamp is turned by 60° within 0.1 s.
     for (const int sub_steps : {3, 30}) {
@@ -434,7 +499,7 @@ TEST_CASE("energy: pins that leave a spot of the cloth no room do not hold up th
     const Run fallen = run(sheet_at_parting_pins("", ""), Backend::opencl, 120);
     double height = 0.0;
     for (std::size_t n = 1; n < fallen.cloth.positions.size(); n += 3) height += fallen.cloth.positions[n] / (17 * 17);
-    CHECK(height < -0.1);  // m; it would hang in the air at -0.08
+    CHECK(height < -0.15);  // m; it would hang in the air at -0.08
 }
 
 TEST_CASE("energy: a piece that pins tear does not slow another piece of the mesh") {
