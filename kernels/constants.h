@@ -75,8 +75,8 @@
 // Bends are those of positions this far on in the part, by the velocities of its start: a damping.
 #define APSLK_BENDING_LEAD 0.25f
 
-// Energy of a whole step, against what is allowed (docs/formulation.md, Energy). What is let pass: the discrete step is a
-// little off, and a cloth that is near its limits corrects itself.
+// Energy of a whole step, against what is allowed (docs/formulation.md, Energy). What is let pass: the discrete step is
+// a little off, and a cloth that is near its limits corrects itself.
 #define APSLK_ENERGY_LET_PASS 1.002f
 #define APSLK_ENERGY_LET_PASS_WITHIN 0.2f
 // An area change, or a stretch over the ceiling, from which on no more than the first of them passes.
