@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Accepts or rejects the result of a call. Reference: apsl::reference, is_worse.
+// Accepts or rejects the result of a call. Reference: apsl::reference, accept_or_reject.
 #ifndef APSLK_ACCEPT_OR_REJECT_H
 #define APSLK_ACCEPT_OR_REJECT_H
 

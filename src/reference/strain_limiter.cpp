@@ -3,6 +3,7 @@
 // Algorithm 1: predict, solve for the pressures, displace, repeat; only the corrections go into the velocities.
 
 #include "finite.hpp"
+#include "reference/accept_or_reject.hpp"
 #include "reference/adaptive_regularization.hpp"
 #include "reference/area_change.hpp"
 #include "reference/bending.hpp"
@@ -128,18 +129,6 @@ struct BasicStrainLimiter<Real>::Implementation {
                 for (Vector3<Real>& gradient : geometry[a].gradients) gradient.setZero();
         return area_change<Real>(geometry, buffers.rest_areas);
     }
-
-    /// The areas and, with a ceiling, the stretches of a state.
-    struct Standing {
-        AreaChange areas;
-        StretchExcess stretches;
-
-        bool finite() const { return areas.finite && stretches.finite; }
-        /// What is judged: the greater of area change and excess, and the squares of both.
-        double max() const { return std::max(areas.max, stretches.max); }
-        double rms() const { return std::hypot(areas.rms, stretches.rms); }
-        double capped_rms() const { return std::hypot(areas.capped_rms, stretches.capped_rms); }
-    };
 
     /// Whether there is more in small steps than limits: where nothing is to be limited there still is this.
     bool acts_in_parts() const { return options.bends || options.tethers_per_vertex > 0; }
@@ -414,26 +403,14 @@ struct BasicStrainLimiter<Real>::Implementation {
                 return name_offender(Offender::triangle, a);
     }
 
-    /// True where the result of the call is dropped: greatest and RMS are then those at x̃ + Δt ṽ. The capped RMS
-    /// decides, so that a single triangle does not cost the others their correction. Where the result stands and the
-    /// greatest rose, the triangle that has it is named.
+    /// True where the result of the call is dropped: greatest and RMS are then those at x̃ + Δt ṽ. Where the result
+    /// stands and the greatest rose, the triangle that has it is named.
     bool is_worse(const Standing& initial, const Standing& change, std::span<const Real> rest_areas) {
-        const double passed = acts_in_parts() ? double{APSLK_LET_PASS_IN_PARTS} : 0.0;
-        const double initial_rms = std::max(initial.rms(), passed),
-                     initial_capped_rms = std::max(initial.capped_rms(), passed);
-        const bool rose = change.max() > std::max(initial.max(), passed) || change.rms() > initial_rms ||
-                          change.capped_rms() > initial_capped_rms;
-        const bool at_rest = initial.max() <= static_cast<double>(APSLK_AT_REST);
-        const bool lets_pass = options.limits_stretch && change.areas.rms < initial.areas.rms;
-        const double let_pass = lets_pass ? double{APSLK_GROWTH_LET_PASS} : 1.0;
-        bool worse = rose && (at_rest || change.capped_rms() >= let_pass * initial_capped_rms);
-        // Where tension goes unstable all of a cloth explodes, and the cap would hide it.
-        if (options.limits_stretch) worse = worse || change.rms() > let_pass * initial_rms;
-        set_standing(worse ? initial : change);
-        if (rose && !at_rest) stats.status = Status::worsened;
-        if (!worse && rose && change.max() > initial.max())
-            name_offender(Offender::triangle, worst_triangle(rest_areas));
-        return worse;
+        const Verdict verdict = judge(initial, change, options.limits_stretch, acts_in_parts());
+        set_standing(verdict.worse ? initial : change);
+        if (verdict.rose) stats.status = Status::worsened;
+        if (verdict.names) name_offender(Offender::triangle, worst_triangle(rest_areas));
+        return verdict.worse;
     }
 
     /// The first triangle with the greatest area change or, with a ceiling, excess.
