@@ -232,15 +232,6 @@ double greatest_speed(const std::vector<double>& velocities) {
     return greatest;
 }
 
-/// J, of motion and height, in the frame of what stands still.
-double energy_in_gravity(const MovingCloth& cloth) {
-    double energy = kinetic_energy(cloth);
-    for (std::size_t i = 0; i < cloth.inverse_masses.size(); ++i)
-        if (cloth.inverse_masses[i] > 0.0)
-            energy += static_cast<double>(gravity) * cloth.positions[3 * i + 1] / cloth.inverse_masses[i];
-    return energy;
-}
-
 /// Of a call for which a few large triangles are 0.2 to 0.35 over their ceiling. Two have two pinned corners each,
 /// which stand too near to one another for ceiling and area at once.
 void check_comes_back(double speed, double entering_speed, double most, const Stats& stats) {
@@ -287,14 +278,14 @@ TEST_CASE("a whole step: a cloth at pins that stand still gains no energy", "[fi
         StrainLimiter limiter(device().context, device().id, cloth.topology, with_ceiling);
         const Parameters parameters{.stretch_ceiling = 1.05f, .acceleration = {0.0f, -gravity, 0.0f}};
         for (int frame = 0; frame < 20; ++frame) {
-            const double before = energy_in_gravity(cloth);
+            const double before = kinetic_energy(cloth) + potential_energy(cloth);
             const Ended end = step_on_device(limiter, cloth, with_ceiling, parameters);
             cloth.positions = end.positions;
             cloth.velocities = end.velocities;
-            CAPTURE(stretch, frame, before, kinetic_energy(cloth), end.stats.max_area_change, end.stats.max_stretch,
-                    end.stats.status);
-            // Within its limits a little passes: what is left of the crumples.
-            CHECK(energy_in_gravity(cloth) <= before + 0.04 * kinetic_energy(cloth) + 1e-5);
+            CAPTURE(stretch, frame, before, end.stats.max_area_change, end.stats.max_stretch, end.stats.status);
+            // Within its limits, after the first step, a little passes: what is left of the crumples.
+            const double kinetic = kinetic_energy(cloth), passes = (frame == 0 ? 0.003 : 0.04) * kinetic + 1e-5;
+            CHECK(kinetic + potential_energy(cloth) <= before + passes);
             CHECK(end.stats.status == Status::ok);
             if (frame >= 10) CHECK(end.stats.max_area_change < 0.005f);
             if (frame >= 10) CHECK(end.stats.max_stretch < 1.06f);

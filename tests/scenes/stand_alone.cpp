@@ -380,6 +380,12 @@ Scene sheet_at_parting_pins(const std::string& more_pins, const std::string& col
         "scene.json");
 }
 
+double greatest_kinetic_energy(const Run& run) {
+    double kinetic = 0.0;  // J
+    for (const FrameReport& frame : run.frames) kinetic = std::max(kinetic, frame.energy.kinetic);
+    return kinetic;
+}
+
 double greatest_gain(const Run& run) {
     double gain = 0.0;  // J, of motion and height; 0 at the start
     for (const FrameReport& frame : run.frames) gain = std::max(gain, frame.energy.kinetic + frame.energy.gravity);
@@ -424,9 +430,7 @@ TEST_CASE("energy: pins that spread a little beyond the ceiling do not shake the
                 "strain_limiting": {"stretch_ceiling": 1.1}, "time_step": )" +
                 std::string(time_step) + R"(, "pins": [)" + pins + "]}"),
             "scene.json");
-        double kinetic = 0.0;
-        for (const FrameReport& frame : run(scene, Backend::opencl, frames).frames)
-            kinetic = std::max(kinetic, frame.energy.kinetic);
+        const double kinetic = greatest_kinetic_energy(run(scene, Backend::opencl, frames));
         CAPTURE(time_step, kinetic);
         CHECK(kinetic < 0.08);
     }
@@ -444,11 +448,8 @@ TEST_CASE("energy: a sheet that is pinned all around and too large for that spri
                             R"(, "pins": [{"box": {"max": [-0.49, 9, 9]}}, {"box": {"min": [0.49, -9, -9]}},
                              {"box": {"max": [9, 9, -0.49]}}, {"box": {"min": [-9, -9, 0.49]}}]})"),
                         "scene.json");
-        double kinetic = 0.0, gravity = 0.0;
-        for (const FrameReport& frame : run(scene, Backend::opencl, frames).frames) {
-            kinetic = std::max(kinetic, frame.energy.kinetic);
-            gravity = frame.energy.gravity;
-        }
+        const Run sprung = run(scene, Backend::opencl, frames);
+        const double kinetic = greatest_kinetic_energy(sprung), gravity = sprung.frames.back().energy.gravity;
         CAPTURE(time_step, kinetic, gravity);
         CHECK(kinetic < 0.05);
         CHECK(gravity < -0.01);  // it hangs through
@@ -467,10 +468,8 @@ TEST_CASE("energy: a torn sheet that its pins draw over a rough floor is not fed
                      {"vertices": [161], "motion": {"translate": {"velocity": [1.5, 0, 0.05]}}}],
             "colliders": [{"plane": {"point": [0, -0.4, 0], "normal": [0, 1, 0], "friction": 0.5}}]})"),
                     "scene.json");
-    double kinetic = 0.0;
-    for (const FrameReport& frame : run(scene, Backend::opencl, 60).frames)
-        kinetic = std::max(kinetic, frame.energy.kinetic);
-    CHECK(kinetic < 1.5);  // J; at 1.5 m/s it has 0.23, and 9 were it fed
+    CHECK(greatest_kinetic_energy(run(scene, Backend::opencl, 60)) <
+          1.5);  // J; at 1.5 m/s it has 0.23, and 9 were it fed
 }
 
 TEST_CASE("energy: a clamped strip swings on at the same rate, however few its sub-steps") {

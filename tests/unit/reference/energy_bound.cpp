@@ -18,6 +18,8 @@ namespace {
 
 using Numbers = std::vector<double>;
 
+constexpr double outside = 0.1, within = 0.025;  // by how much limits are missed
+
 reference::Buffers<double> buffers(const Numbers& inverse_masses, const Numbers& contacts = {}) {
     return {.positions = {},
             .velocities = {},
@@ -132,12 +134,6 @@ TEST_CASE("energy: what a body adds to a vertex, by hand", "[energy]") {
     CHECK(AddedByBodies{2.0, 3.0, 0.5}.of_cloth(100.0) == Approx(2.0 + 3.0 * 16.0));
     CHECK(AddedByBodies{2.0, 0.0, 0.0}.of_cloth(100.0) == 2.0);
 }
-
-namespace {
-
-constexpr double outside = 0.1, within = 0.025;  // by how much limits are missed
-
-}  // namespace
 
 TEST_CASE("energy: a cloth at pins that stand still keeps at most that of the free step, by hand", "[energy]") {
     // 2 kg at 3 m/s beside a pin: Σ m |u|² = 18.
